@@ -1,0 +1,3 @@
+//! Live Robot Programming for the terminal. Each layer may use those before it, and knows nothing of those after it.
+
+pub mod syntax;
