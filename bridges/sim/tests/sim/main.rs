@@ -1,0 +1,4 @@
+//! Tests of the simulator from the outside: world texts and commands in, poses and readings out.
+
+mod follower;
+mod explore;
