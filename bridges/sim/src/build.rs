@@ -1,30 +1,35 @@
 //! Puts a world together from its statements and checks what they mean together. Knows nothing of the text's layout.
 
+use crate::drawing::Lines;
 use crate::fault::{Fault, Place};
 use crate::form::{GROUND, Word};
 use crate::geometry::{Point, Pose, Segment, wrapped};
-use crate::path::{Pen, Side};
 use crate::reader::{Number, Statement, read};
 use crate::robot;
-use crate::world::{Block, Line, Mount, Size, World};
+use crate::world::{Block, Mount, Size, World};
 
 const MOST_FAULTS: usize = 50;
 const MOST_TEXT: usize = 1_000_000;
 const MOST_WALLS: usize = 1_000;
-const MOST_POINTS: usize = 20_000;
-/// Rounding while a line is drawn must not put its last point off the floor, m.
-const SLACK: f64 = 1e-6;
+/// How far rounding may put a box or the end of a line off the floor, m.
+pub(crate) const SLACK: f64 = 1e-6;
 
-const SMALLEST_WORLD: &str = "the smallest world is two lines: `size 2 1` and `start 0.5 0.5 heading 0`";
+const SMALLEST_WORLD: &str =
+    "the smallest world is two lines: `size 2 1` and `start 0.5 0.5 heading 0`";
 
 pub(crate) fn world(text: &str) -> Result<World, Vec<Fault>> {
     let top = Place { line: 1, column: 1 };
     if text.len() > MOST_TEXT {
-        return Err(vec![top.fault("the text is too long for a world").with_help("at most 1 MB")]);
+        return Err(vec![
+            top.fault("the text is too long for a world")
+                .with_help("at most 1 MB"),
+        ]);
     }
     let (statements, faults) = read(text);
     if statements.is_empty() && faults.is_empty() {
-        return Err(vec![top.fault("the world is empty").with_help(SMALLEST_WORLD)]);
+        return Err(vec![
+            top.fault("the world is empty").with_help(SMALLEST_WORLD),
+        ]);
     }
     let mut builder = Builder::new(size(&statements), faults);
     for statement in &statements {
@@ -34,18 +39,14 @@ pub(crate) fn world(text: &str) -> Result<World, Vec<Fault>> {
 }
 
 fn size(statements: &[Statement]) -> Option<Size> {
-    let numbers = &statements.iter().find(|statement| statement.word == Word::Size)?.numbers;
-    Some(Size { width: numbers[0].value, height: numbers[1].value })
-}
-
-/// A line being drawn: it has a pen once its `from` was read.
-struct Drawing {
-    place: Place,
-    width: f64,
-    brightness: f64,
-    pen: Option<Pen>,
-    /// The line has a fault already; what follows from it is not worth another one.
-    spoilt: bool,
+    let numbers = &statements
+        .iter()
+        .find(|statement| statement.word == Word::Size)?
+        .numbers;
+    Some(Size {
+        width: numbers[0].value,
+        height: numbers[1].value,
+    })
 }
 
 struct Builder {
@@ -54,9 +55,7 @@ struct Builder {
     ground: f64,
     light: Mount,
     range: Mount,
-    drawing: Option<Drawing>,
-    lines: Vec<Line>,
-    points: usize,
+    lines: Lines,
     walls: Vec<Segment>,
     boxes: Vec<Block>,
     seen: Vec<(Word, Place)>,
@@ -69,11 +68,15 @@ impl Builder {
             size,
             start: None,
             ground: GROUND,
-            light: Mount { ahead: robot::LIGHT_AHEAD, left: 0.0 },
-            range: Mount { ahead: robot::RANGE_AHEAD, left: 0.0 },
-            drawing: None,
-            lines: Vec::new(),
-            points: 0,
+            light: Mount {
+                ahead: robot::LIGHT_AHEAD,
+                left: 0.0,
+            },
+            range: Mount {
+                ahead: robot::RANGE_AHEAD,
+                left: 0.0,
+            },
+            lines: Lines::on(size),
             walls: size.map(edges).unwrap_or_default(),
             boxes: Vec::new(),
             seen: Vec::new(),
@@ -104,9 +107,14 @@ impl Builder {
             }
             Word::Wall => self.wall(statement),
             Word::Box => self.block(statement),
-            Word::Line => self.begin_line(statement),
-            Word::From => self.put_pen(statement),
-            Word::Straight | Word::To | Word::Left | Word::Right => self.draw(statement),
+            Word::Line => self.lines.begin(statement, &mut self.faults),
+            Word::From => {
+                let place = self.on_floor(n[0], n[1]);
+                self.lines.put_pen(statement, place, &mut self.faults);
+            }
+            Word::Straight | Word::To | Word::Left | Word::Right => {
+                self.lines.draw(statement, &mut self.faults)
+            }
         }
     }
 
@@ -114,8 +122,12 @@ impl Builder {
     fn once(&mut self, statement: &Statement) {
         match self.seen.iter().find(|(word, _)| *word == statement.word) {
             Some((_, first)) => {
-                let message = format!("`{}` was given already, on line {}", statement.name, first.line);
-                self.faults.push(statement.place.fault(message).with_help("keep one of them"));
+                let message = format!(
+                    "`{}` was given already, on line {}",
+                    statement.name, first.line
+                );
+                self.faults
+                    .push(statement.place.fault(message).with_help("keep one of them"));
             }
             None => self.seen.push((statement.word, statement.place)),
         }
@@ -127,7 +139,12 @@ impl Builder {
             for (number, name, most) in [(x, "x", size.width), (y, "y", size.height)] {
                 if number.value > most {
                     let message = format!("{name} = {} is off the floor", number.value);
-                    self.faults.push(number.place.fault(message).with_help(format!("{name} goes from 0 to {most}")));
+                    self.faults.push(
+                        number
+                            .place
+                            .fault(message)
+                            .with_help(format!("{name} goes from 0 to {most}")),
+                    );
                 }
             }
         }
@@ -136,9 +153,17 @@ impl Builder {
 
     fn wall(&mut self, statement: &Statement) {
         let n = &statement.numbers;
-        let wall = Segment { from: self.on_floor(n[0], n[1]), to: self.on_floor(n[2], n[3]) };
+        let wall = Segment {
+            from: self.on_floor(n[0], n[1]),
+            to: self.on_floor(n[2], n[3]),
+        };
         if wall.length() < 0.001 {
-            self.faults.push(statement.place.fault("the wall has no length").with_help("its two ends are the same"));
+            self.faults.push(
+                statement
+                    .place
+                    .fault("the wall has no length")
+                    .with_help("its two ends are the same"),
+            );
         }
         self.add_walls(statement, &[wall]);
     }
@@ -151,8 +176,12 @@ impl Builder {
             && (high.x > size.width + SLACK || high.y > size.height + SLACK)
         {
             let message = format!("the box reaches to {} {}, off the floor", high.x, high.y);
-            let help = format!("x goes from 0 to {}, y from 0 to {}", size.width, size.height);
-            self.faults.push(statement.place.fault(message).with_help(help));
+            let help = format!(
+                "x goes from 0 to {}, y from 0 to {}",
+                size.width, size.height
+            );
+            self.faults
+                .push(statement.place.fault(message).with_help(help));
         }
         self.add_walls(statement, &sides(low, high));
         self.boxes.push(Block { low, high });
@@ -163,89 +192,19 @@ impl Builder {
             self.walls.extend(walls);
             if self.walls.len() > MOST_WALLS {
                 let fault = statement.place.fault("too many walls");
-                self.faults.push(fault.with_help(format!("at most {MOST_WALLS}; a box has four, and so has the floor")));
+                self.faults.push(fault.with_help(format!(
+                    "at most {MOST_WALLS}; a box has four, and so has the floor"
+                )));
             }
-        }
-    }
-
-    fn begin_line(&mut self, statement: &Statement) {
-        self.end_line();
-        let [width, brightness] = [statement.numbers[0].value, statement.numbers[1].value];
-        self.drawing = Some(Drawing { place: statement.place, width, brightness, pen: None, spoilt: false });
-    }
-
-    fn put_pen(&mut self, statement: &Statement) {
-        let place = self.on_floor(statement.numbers[0], statement.numbers[1]);
-        let heading = statement.numbers[2].value.to_radians();
-        match &mut self.drawing {
-            None => {
-                let fault = statement.place.fault("`from` must stand after a `line`");
-                self.faults.push(fault.with_help("put a line `line width 0.06` before it"));
-            }
-            Some(drawing) if drawing.pen.is_some() => {
-                let fault = statement.place.fault("this line has a `from` already");
-                self.faults.push(fault.with_help("begin another line with `line`"));
-            }
-            Some(drawing) => drawing.pen = Some(Pen::new(place, heading)),
-        }
-    }
-
-    fn draw(&mut self, statement: &Statement) {
-        let n = &statement.numbers;
-        let Some(Drawing { pen: Some(pen), spoilt, .. }) = &mut self.drawing else {
-            return self.draw_without_pen(statement);
-        };
-        if *spoilt {
-            return;
-        }
-        let before = pen.points().len();
-        match statement.word {
-            Word::To => pen.to(Point::new(n[0].value, n[1].value)),
-            Word::Left => pen.bend(Side::Left, n[0].value.to_radians(), n[1].value),
-            Word::Right => pen.bend(Side::Right, n[0].value.to_radians(), n[1].value),
-            _ => pen.straight(n[0].value),
-        }
-        self.points += pen.points().len() - before;
-        let fault = match off_floor(&pen.points()[before..], self.size) {
-            Some(out) => Some(
-                statement.place.fault(format!("the line leaves the floor here, at {:.2} {:.2}", out.x, out.y)),
-            ),
-            None if self.points > MOST_POINTS => Some(statement.place.fault("the lines have too many pieces")),
-            None => None,
-        };
-        if let Some(fault) = fault {
-            *spoilt = true;
-            self.faults.push(fault.with_help("make the floor larger, or the line shorter"));
-        }
-    }
-
-    fn draw_without_pen(&mut self, statement: &Statement) {
-        let help = match &mut self.drawing {
-            Some(drawing) if drawing.spoilt => return,
-            Some(drawing) => {
-                drawing.spoilt = true;
-                "say where the line begins: `from X Y heading DEGREES`"
-            }
-            None => "begin with `line width 0.06`, then `from X Y heading DEGREES`",
-        };
-        self.faults.push(statement.place.fault(format!("nothing to draw `{}` with", statement.name)).with_help(help));
-    }
-
-    fn end_line(&mut self) {
-        let Some(drawing) = self.drawing.take() else { return };
-        let points = drawing.pen.map(Pen::into_points).unwrap_or_default();
-        if points.len() >= 2 {
-            self.lines.push(Line { width: drawing.width, brightness: drawing.brightness, points });
-        } else if !drawing.spoilt {
-            let fault = drawing.place.fault("the line has no pieces");
-            self.faults.push(fault.with_help("after `line` comes `from X Y heading DEGREES`, then `straight`, `left`, `right` or `to`"));
         }
     }
 
     fn finish(mut self, top: Place) -> Result<World, Vec<Fault>> {
-        self.end_line();
+        self.lines.end(&mut self.faults);
         self.require_basics(top);
-        let (Some(size), Some((start, place)), true) = (self.size, self.start, self.faults.is_empty()) else {
+        let (Some(size), Some((start, place)), true) =
+            (self.size, self.start, self.faults.is_empty())
+        else {
             self.faults.sort_by_key(|fault| (fault.line, fault.column));
             self.faults.truncate(MOST_FAULTS);
             return Err(self.faults);
@@ -254,7 +213,7 @@ impl Builder {
             size,
             start,
             ground: self.ground,
-            lines: self.lines,
+            lines: self.lines.into_drawn(),
             walls: self.walls,
             boxes: self.boxes,
             light: self.light,
@@ -263,28 +222,48 @@ impl Builder {
         if world.has_room_at(start.place()) {
             return Ok(world);
         }
-        let help = format!("its body is a disc of {} m radius; move the start or the wall", robot::RADIUS);
-        Err(vec![place.fault("the robot would start in a wall").with_help(help)])
+        let help = format!(
+            "its body is a disc of {} m radius; move the start or the wall",
+            robot::RADIUS
+        );
+        Err(vec![
+            place
+                .fault("the robot would start in a wall")
+                .with_help(help),
+        ])
     }
 
     /// Notes a fault when there is no floor or no start; not when the text tried to give one and failed.
     fn require_basics(&mut self, top: Place) {
         let tried = !self.faults.is_empty();
         if self.size.is_none() && !tried {
-            self.faults.push(top.fault("the world has no size").with_help("add a line `size WIDTH HEIGHT`, in metres"));
+            self.faults.push(
+                top.fault("the world has no size")
+                    .with_help("add a line `size WIDTH HEIGHT`, in metres"),
+            );
         }
         if self.start.is_none() && !tried {
-            self.faults.push(top.fault("the robot has no place to start").with_help("add a line `start X Y heading DEGREES`"));
+            self.faults.push(
+                top.fault("the robot has no place to start")
+                    .with_help("add a line `start X Y heading DEGREES`"),
+            );
         }
     }
 }
 
 fn pose(place: Point, heading: Number) -> Pose {
-    Pose { x: place.x, y: place.y, theta: wrapped(heading.value.to_radians()) }
+    Pose {
+        x: place.x,
+        y: place.y,
+        theta: wrapped(heading.value.to_radians()),
+    }
 }
 
 fn mount(numbers: &[Number]) -> Mount {
-    Mount { ahead: numbers[0].value, left: numbers[1].value }
+    Mount {
+        ahead: numbers[0].value,
+        left: numbers[1].value,
+    }
 }
 
 fn edges(size: Size) -> Vec<Segment> {
@@ -292,12 +271,14 @@ fn edges(size: Size) -> Vec<Segment> {
 }
 
 fn sides(low: Point, high: Point) -> [Segment; 4] {
-    let corners = [low, Point::new(high.x, low.y), high, Point::new(low.x, high.y)];
-    [0, 1, 2, 3].map(|side| Segment { from: corners[side], to: corners[(side + 1) % 4] })
-}
-
-fn off_floor(points: &[Point], size: Option<Size>) -> Option<Point> {
-    let size = size?;
-    let inside = |value: f64, most: f64| (-SLACK..=most + SLACK).contains(&value);
-    points.iter().copied().find(|point| !inside(point.x, size.width) || !inside(point.y, size.height))
+    let corners = [
+        low,
+        Point::new(high.x, low.y),
+        high,
+        Point::new(low.x, high.y),
+    ];
+    [0, 1, 2, 3].map(|side| Segment {
+        from: corners[side],
+        to: corners[(side + 1) % 4],
+    })
 }

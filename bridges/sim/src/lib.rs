@@ -12,6 +12,7 @@
 
 mod body;
 mod build;
+mod drawing;
 mod fault;
 mod form;
 mod geometry;

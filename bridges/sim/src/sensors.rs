@@ -22,7 +22,8 @@ fn coverage(line: &Line, spot: Point) -> f64 {
         .map(|piece| piece.nearest(spot).distance(spot))
         .fold(f64::INFINITY, f64::min);
     let half = line.width / 2.0;
-    share_below((half - distance) / robot::LIGHT_SPOT) - share_below((-half - distance) / robot::LIGHT_SPOT)
+    share_below((half - distance) / robot::LIGHT_SPOT)
+        - share_below((-half - distance) / robot::LIGHT_SPOT)
 }
 
 /// The share of the unit disc to the left of x = `edge`.

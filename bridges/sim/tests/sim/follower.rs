@@ -40,7 +40,9 @@ pub struct Run {
 impl Run {
     /// When the robot had bumped at two different ends of the course, s.
     pub fn finished(&self) -> Option<f64> {
-        let [Some((_, x, y)), Some((time, other_x, other_y))] = self.bumps else { return None };
+        let [Some((_, x, y)), Some((time, other_x, other_y))] = self.bumps else {
+            return None;
+        };
         ((x - other_x).hypot(y - other_y) > 0.5).then_some(time)
     }
 }
@@ -49,9 +51,16 @@ impl Run {
 enum State {
     Moving,
     /// Sweep number, counted in quarters, and steps left in this quarter.
-    Looking { quarter: u32, left: u32 },
-    Back { left: u32 },
-    Turn { left: u32 },
+    Looking {
+        quarter: u32,
+        left: u32,
+    },
+    Back {
+        left: u32,
+    },
+    Turn {
+        left: u32,
+    },
 }
 
 impl Follower {
@@ -77,7 +86,10 @@ impl Follower {
     }
 
     fn looking(&self) -> State {
-        State::Looking { quarter: 0, left: self.maxlook }
+        State::Looking {
+            quarter: 0,
+            left: self.maxlook,
+        }
     }
 
     fn next(&self, state: State, light: u8) -> State {
@@ -86,9 +98,15 @@ impl Follower {
             State::Looking { .. } if light < LIMIT - MARGIN => State::Moving,
             State::Looking { quarter, left: 1 } => {
                 let sweep = (quarter + 1) / 4;
-                State::Looking { quarter: quarter + 1, left: self.maxlook << sweep.min(12) }
+                State::Looking {
+                    quarter: quarter + 1,
+                    left: self.maxlook << sweep.min(12),
+                }
             }
-            State::Looking { quarter, left } => State::Looking { quarter, left: left - 1 },
+            State::Looking { quarter, left } => State::Looking {
+                quarter,
+                left: left - 1,
+            },
             State::Back { left: 1 } => State::Turn { left: TURN_STEPS },
             State::Back { left } => State::Back { left: left - 1 },
             State::Turn { left: 1 } => self.looking(),
@@ -110,7 +128,9 @@ impl Follower {
     /// Look to a side, return, look to the other side, return; a one-sided follower looks to the same side again.
     fn side(&self, quarter: u32) -> f64 {
         match (self.ways, quarter) {
-            (Search::BothWays, 0 | 3) | (Search::OnlyLeft, 0 | 2) | (Search::OnlyRight, 1 | 3) => 1.0,
+            (Search::BothWays, 0 | 3) | (Search::OnlyLeft, 0 | 2) | (Search::OnlyRight, 1 | 3) => {
+                1.0
+            }
             _ => -1.0,
         }
     }

@@ -1,4 +1,7 @@
 //! Tests of the simulator from the outside: world texts and commands in, poses and readings out.
 
+mod courses;
 mod follower;
-mod explore;
+mod motion;
+mod readings;
+mod texts;
