@@ -132,6 +132,11 @@ impl Engine {
         self.notes.push(Note::Rare(Box::new(what)));
     }
 
+    /// Puts something that only the session knows among the records.
+    pub fn say(&mut self, what: What) {
+        self.rare(what);
+    }
+
     /// Hands over what happened since the last call, in order.
     pub fn drain(&mut self, mut sink: impl FnMut(Record)) {
         let (step, t) = (self.step, self.now);

@@ -23,7 +23,7 @@ impl std::fmt::Display for Refused {
 
 impl Engine {
     pub fn command(&mut self, command: Command) -> Result<(), Refused> {
-        if !matches!(command, Command::Load(_)) {
+        if !matches!(command, Command::Load(_) | Command::Reject { .. }) {
             self.rare(What::Command { command: command.clone() });
         }
         let result = self.obey(command);
@@ -38,6 +38,7 @@ impl Engine {
     fn obey(&mut self, command: Command) -> Result<(), Refused> {
         match command {
             Command::Load(program) => self.load(Arc::unwrap_or_clone(program)),
+            Command::Reject { findings } => self.rare(What::Reject { findings }),
             Command::Pause => self.pause("asked for"),
             Command::Runstop => self.pause("runstop"),
             Command::Resume => self.resume(),
