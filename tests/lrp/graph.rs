@@ -2,7 +2,11 @@
 
 use std::path::PathBuf;
 
+use proptest::prelude::*;
+
 use lrp::ui::graph::{Edge, EdgeKind, Glyphs, Graph, Node, NodeKind, Options, Rows, draw};
+
+use crate::tracer::{Seen, trace};
 
 const UNICODE: Options = Options {
     glyphs: Glyphs::Unicode,
@@ -14,6 +18,8 @@ const ASCII: Options = Options {
     max_width: None,
     rows: Rows::Two,
 };
+
+const ONE_ROW: Options = Options { rows: Rows::One, ..UNICODE };
 
 /// A graph in a line of words: nodes `a b(room) *`, edges `a->b label`; a label's first character may tell the kind.
 fn graph(nodes: &str, edges: &[&str]) -> Graph {
@@ -158,16 +164,123 @@ fn same_as_file(name: &str, text: &str) {
 
 #[test]
 fn drawings_look_like_their_files() {
-    let cases = [
+    for (name, graph) in fixed_cases() {
+        same_as_file(name, &draw(&graph, &UNICODE).text());
+        same_as_file(&format!("{name}_ascii"), &draw(&graph, &ASCII).text());
+    }
+}
+
+/// What a reader should find.
+fn meant(graph: &Graph) -> Seen {
+    let name = |i: usize| graph.nodes[i].name.clone();
+    let mut edges: Vec<_> = graph.edges.iter().map(|e| (name(e.from), name(e.to), e.label.clone())).collect();
+    edges.sort();
+    Seen { states: graph.nodes.iter().map(|node| (node.name.clone(), node.inside.is_some())).collect(), edges }
+}
+
+fn fixed_cases() -> [(&'static str, Graph); 6] {
+    [
         ("tick_tock", tick_tock()),
         ("line_follower", line_follower()),
         ("search", search()),
         ("full", full()),
         ("ring", ring()),
         ("loops", loops()),
-    ];
-    for (name, graph) in cases {
-        same_as_file(name, &draw(&graph, &UNICODE).text());
-        same_as_file(&format!("{name}_ascii"), &draw(&graph, &ASCII).text());
+    ]
+}
+
+#[test]
+fn fixed_machines_are_read_as_they_are() {
+    for (name, graph) in fixed_cases() {
+        for options in [UNICODE, ASCII, ONE_ROW] {
+            let text = draw(&graph, &options).text();
+            assert_eq!(trace(&text), Ok(meant(&graph)), "{name}\n{text}");
+        }
+    }
+}
+
+/// A drawing with one glyph changed says something else, or nothing.
+#[test]
+fn the_tracer_notices_each_wrong_glyph() {
+    for (name, graph) in fixed_cases() {
+        for options in [UNICODE, ASCII] {
+            let text = draw(&graph, &options).text();
+            for (at, glyph) in text.char_indices().filter(|(_, c)| !matches!(c, ' ' | '\n')) {
+                for other in wrong(glyph) {
+                    let mut changed = text.clone();
+                    changed.replace_range(at..at + glyph.len_utf8(), &other.to_string());
+                    assert_ne!(trace(&changed), Ok(meant(&graph)), "{name}: {other:?} for {glyph:?} goes unnoticed in\n{changed}");
+                }
+            }
+        }
+    }
+}
+
+/// What to put in a glyph's place: a blank, and what of its own sort means something else.
+fn wrong(glyph: char) -> Vec<char> {
+    let sorts = ["─│┼┌┐└┘", "►◄", "▲▼", "▷◁", "△▽", "-|+.'", "<>", "^v"];
+    let sort = sorts.iter().find(|sort| sort.contains(glyph)).copied().unwrap_or("");
+    std::iter::once(' ').chain(sort.chars().filter(|c| *c != glyph)).collect()
+}
+
+/// A graph of up to `most` states, the last of them perhaps `*`, with up to four times as many edges of all kinds.
+fn any_graph(most: usize) -> impl Strategy<Value = Graph> {
+    (2..=most, any::<bool>()).prop_flat_map(|(count, wildcard)| {
+        let nodes = prop::collection::vec((any_name(), prop::option::weighted(0.2, any_name())), count);
+        let edge = (0..count, 0..count, any_label(), 0..4usize);
+        (nodes, prop::collection::vec(edge, 0..=4 * count)).prop_map(move |(nodes, edges)| built(nodes, edges, wildcard))
+    })
+}
+
+fn built(nodes: Vec<(String, Option<String>)>, edges: Vec<(usize, usize, String, usize)>, wildcard: bool) -> Graph {
+    let last = nodes.len() - 1;
+    let is_any = |i: usize| wildcard && i == last;
+    let node = |(i, (name, inside))| match is_any(i) {
+        true => Node { name: "*".to_owned(), kind: NodeKind::Any, inside: None },
+        false => Node { name: format!("{name}{i}"), kind: NodeKind::State, inside },
+    };
+    let edge = |(id, (from, to, label, kind)): (usize, (usize, usize, String, usize))| {
+        let kind = [EdgeKind::On, EdgeKind::Eps, EdgeKind::Ontime, EdgeKind::Exit][kind];
+        let kind = if is_any(from) { EdgeKind::Wildcard } else { kind };
+        Edge { from, to, label, kind, id: id as u32 }
+    };
+    let edges = edges.into_iter().enumerate().map(edge).filter(|edge| !is_any(edge.to));
+    Graph { edges: edges.collect(), nodes: nodes.into_iter().enumerate().map(node).collect() }
+}
+
+/// Letters of all widths, an accent that combines with the letter before it, and signs that lines are made of.
+fn any_name() -> impl Strategy<Value = String> {
+    "[a-z_]([a-zA-Zäé界線😀_-]|e\u{301}){0,9}"
+}
+
+fn any_label() -> impl Strategy<Value = String> {
+    "|[a-zäß線🤖]{1,3}|[a-z-]{1,14}|[0-9]{1,5}ms|[ov.'|+=~:<>^-]{1,4}|[a-z]{1,5}\\.x [<>=+|-] [0-9]{1,4}"
+}
+
+fn read_back(graph: &Graph) -> Result<(), TestCaseError> {
+    for options in [UNICODE, ASCII, ONE_ROW] {
+        let drawing = draw(graph, &options);
+        let text = drawing.text();
+        prop_assert_eq!(trace(&text), Ok(meant(graph)), "{:?}\n{}", options, text);
+        prop_assert_eq!(&draw(graph, &options), &drawing);
+    }
+    Ok(())
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 200, ..ProptestConfig::default() })]
+
+    #[test]
+    fn machines_are_read_as_they_are(graph in any_graph(40)) {
+        read_back(&graph)?;
+    }
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 10, ..ProptestConfig::default() })]
+
+    #[test]
+    fn large_machines_are_read_as_they_are(graph in any_graph(100)) {
+        read_back(&graph)?;
     }
 }

@@ -389,7 +389,7 @@ impl Spine {
         };
         let lane = lanes.of(edge).unwrap_or(1);
         let padding = self.glyphs.label_padding();
-        let room = lanes.first_in(from).unwrap_or(lane) - 3 - 2 * padding;
+        let room = lanes.first_in(from).unwrap_or(lane).saturating_sub(3 + 2 * padding);
         let text = words::shorten(&self.labels[edge], room, self.glyphs);
         let (near, far) = (2 + padding, 1 + padding + words::width(&text));
         let start = match side {
