@@ -19,7 +19,10 @@ const ASCII: Options = Options {
     rows: Rows::Two,
 };
 
-const ONE_ROW: Options = Options { rows: Rows::One, ..UNICODE };
+const ONE_ROW: Options = Options {
+    rows: Rows::One,
+    ..UNICODE
+};
 
 /// A graph in a line of words: nodes `a b(room) *`, edges `a->b label`; a label's first character may tell the kind.
 fn graph(nodes: &str, edges: &[&str]) -> Graph {
@@ -173,9 +176,20 @@ fn drawings_look_like_their_files() {
 /// What a reader should find.
 fn meant(graph: &Graph) -> Seen {
     let name = |i: usize| graph.nodes[i].name.clone();
-    let mut edges: Vec<_> = graph.edges.iter().map(|e| (name(e.from), name(e.to), e.label.clone())).collect();
+    let mut edges: Vec<_> = graph
+        .edges
+        .iter()
+        .map(|e| (name(e.from), name(e.to), e.label.clone()))
+        .collect();
     edges.sort();
-    Seen { states: graph.nodes.iter().map(|node| (node.name.clone(), node.inside.is_some())).collect(), edges }
+    Seen {
+        states: graph
+            .nodes
+            .iter()
+            .map(|node| (node.name.clone(), node.inside.is_some()))
+            .collect(),
+        edges,
+    }
 }
 
 fn fixed_cases() -> [(&'static str, Graph); 6] {
@@ -205,11 +219,18 @@ fn the_tracer_notices_each_wrong_glyph() {
     for (name, graph) in fixed_cases() {
         for options in [UNICODE, ASCII] {
             let text = draw(&graph, &options).text();
-            for (at, glyph) in text.char_indices().filter(|(_, c)| !matches!(c, ' ' | '\n')) {
+            for (at, glyph) in text
+                .char_indices()
+                .filter(|(_, c)| !matches!(c, ' ' | '\n'))
+            {
                 for other in wrong(glyph) {
                     let mut changed = text.clone();
                     changed.replace_range(at..at + glyph.len_utf8(), &other.to_string());
-                    assert_ne!(trace(&changed), Ok(meant(&graph)), "{name}: {other:?} for {glyph:?} goes unnoticed in\n{changed}");
+                    assert_ne!(
+                        trace(&changed),
+                        Ok(meant(&graph)),
+                        "{name}: {other:?} for {glyph:?} goes unnoticed in\n{changed}"
+                    );
                 }
             }
         }
@@ -219,33 +240,75 @@ fn the_tracer_notices_each_wrong_glyph() {
 /// What to put in a glyph's place: a blank, and what of its own sort means something else.
 fn wrong(glyph: char) -> Vec<char> {
     let sorts = ["─│┼┌┐└┘", "►◄", "▲▼", "▷◁", "△▽", "-|+.'", "<>", "^v"];
-    let sort = sorts.iter().find(|sort| sort.contains(glyph)).copied().unwrap_or("");
-    std::iter::once(' ').chain(sort.chars().filter(|c| *c != glyph)).collect()
+    let sort = sorts
+        .iter()
+        .find(|sort| sort.contains(glyph))
+        .copied()
+        .unwrap_or("");
+    std::iter::once(' ')
+        .chain(sort.chars().filter(|c| *c != glyph))
+        .collect()
 }
 
 /// A graph of up to `most` states, the last of them perhaps `*`, with up to four times as many edges of all kinds.
 fn any_graph(most: usize) -> impl Strategy<Value = Graph> {
     (2..=most, any::<bool>()).prop_flat_map(|(count, wildcard)| {
-        let nodes = prop::collection::vec((any_name(), prop::option::weighted(0.2, any_name())), count);
+        let nodes =
+            prop::collection::vec((any_name(), prop::option::weighted(0.2, any_name())), count);
         let edge = (0..count, 0..count, any_label(), 0..4usize);
-        (nodes, prop::collection::vec(edge, 0..=4 * count)).prop_map(move |(nodes, edges)| built(nodes, edges, wildcard))
+        (nodes, prop::collection::vec(edge, 0..=4 * count))
+            .prop_map(move |(nodes, edges)| built(nodes, edges, wildcard))
     })
 }
 
-fn built(nodes: Vec<(String, Option<String>)>, edges: Vec<(usize, usize, String, usize)>, wildcard: bool) -> Graph {
+fn built(
+    nodes: Vec<(String, Option<String>)>,
+    edges: Vec<(usize, usize, String, usize)>,
+    wildcard: bool,
+) -> Graph {
     let last = nodes.len() - 1;
     let is_any = |i: usize| wildcard && i == last;
     let node = |(i, (name, inside))| match is_any(i) {
-        true => Node { name: "*".to_owned(), kind: NodeKind::Any, inside: None },
-        false => Node { name: format!("{name}{i}"), kind: NodeKind::State, inside },
+        true => Node {
+            name: "*".to_owned(),
+            kind: NodeKind::Any,
+            inside: None,
+        },
+        false => Node {
+            name: format!("{name}{i}"),
+            kind: NodeKind::State,
+            inside,
+        },
     };
     let edge = |(id, (from, to, label, kind)): (usize, (usize, usize, String, usize))| {
-        let kind = [EdgeKind::On, EdgeKind::Eps, EdgeKind::Ontime, EdgeKind::Exit][kind];
-        let kind = if is_any(from) { EdgeKind::Wildcard } else { kind };
-        Edge { from, to, label, kind, id: id as u32 }
+        let kind = [
+            EdgeKind::On,
+            EdgeKind::Eps,
+            EdgeKind::Ontime,
+            EdgeKind::Exit,
+        ][kind];
+        let kind = if is_any(from) {
+            EdgeKind::Wildcard
+        } else {
+            kind
+        };
+        Edge {
+            from,
+            to,
+            label,
+            kind,
+            id: id as u32,
+        }
     };
-    let edges = edges.into_iter().enumerate().map(edge).filter(|edge| !is_any(edge.to));
-    Graph { edges: edges.collect(), nodes: nodes.into_iter().enumerate().map(node).collect() }
+    let edges = edges
+        .into_iter()
+        .enumerate()
+        .map(edge)
+        .filter(|edge| !is_any(edge.to));
+    Graph {
+        edges: edges.collect(),
+        nodes: nodes.into_iter().enumerate().map(node).collect(),
+    }
 }
 
 /// Letters of all widths, an accent that combines with the letter before it, and signs that lines are made of.

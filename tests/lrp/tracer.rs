@@ -20,14 +20,25 @@ pub fn trace(text: &str) -> Result<Seen, String> {
     let Some(column) = Column::find(&page)? else {
         return match page.cells.iter().flatten().find(|cell| *cell != " ") {
             Some(cell) => Err(format!("{cell:?} without a box")),
-            None => Ok(Seen { states: Vec::new(), edges: Vec::new() }),
+            None => Ok(Seen {
+                states: Vec::new(),
+                edges: Vec::new(),
+            }),
         };
     };
-    let mut tracer = Tracer { page: &page, column: &column, owners: BTreeMap::new() };
+    let mut tracer = Tracer {
+        page: &page,
+        column: &column,
+        owners: BTreeMap::new(),
+    };
     let mut edges = tracer.edges()?;
     tracer.nothing_is_left()?;
     edges.sort();
-    let states = column.boxes.iter().map(|b| (b.name.clone(), b.nested)).collect();
+    let states = column
+        .boxes
+        .iter()
+        .map(|b| (b.name.clone(), b.nested))
+        .collect();
     Ok(Seen { states, edges })
 }
 
@@ -81,13 +92,25 @@ impl Page {
         let script = if text.contains('▌') { UNICODE } else { ASCII };
         let cells = text.lines().map(|line| {
             let clusters = line.graphemes(true);
-            clusters.flat_map(|c| [c].into_iter().chain(std::iter::repeat_n("", c.width().max(1) - 1)).map(str::to_owned)).collect()
+            clusters
+                .flat_map(|c| {
+                    [c].into_iter()
+                        .chain(std::iter::repeat_n("", c.width().max(1) - 1))
+                        .map(str::to_owned)
+                })
+                .collect()
         });
-        Page { cells: cells.collect(), script }
+        Page {
+            cells: cells.collect(),
+            script,
+        }
     }
 
     fn at(&self, (x, y): At) -> &str {
-        self.cells.get(y).and_then(|row| row.get(x)).map_or(" ", String::as_str)
+        self.cells
+            .get(y)
+            .and_then(|row| row.get(x))
+            .map_or(" ", String::as_str)
     }
 
     fn text(&self, y: usize, columns: std::ops::Range<usize>) -> String {
@@ -114,7 +137,13 @@ impl Column {
         let mut borders: Option<(usize, usize)> = None;
         let mut boxes: Vec<Box> = Vec::new();
         for (y, row) in page.cells.iter().enumerate() {
-            let [left, right] = page.script.borders.map(|border| row.iter().enumerate().filter(|(_, cell)| *cell == border).map(|(x, _)| x).collect::<Vec<_>>());
+            let [left, right] = page.script.borders.map(|border| {
+                row.iter()
+                    .enumerate()
+                    .filter(|(_, cell)| *cell == border)
+                    .map(|(x, _)| x)
+                    .collect::<Vec<_>>()
+            });
             let (left, right) = match (left[..].first(), right[..].first()) {
                 (None, None) => continue,
                 (Some(&l), Some(&r)) if l < r && left.len() == 1 && right.len() == 1 => (l, r),
@@ -128,7 +157,12 @@ impl Column {
             }
             match boxes.last_mut() {
                 Some(last) if last.bottom + 1 == y => last.bottom = y,
-                _ => boxes.push(Box { top: y, bottom: y, name: String::new(), nested: false }),
+                _ => boxes.push(Box {
+                    top: y,
+                    bottom: y,
+                    name: String::new(),
+                    nested: false,
+                }),
             }
             let text = page.text(y, left + 1..right);
             let last = boxes.last_mut().expect("one was pushed");
@@ -250,7 +284,9 @@ impl Tracer<'_> {
     fn neighbours(&self, (x, y): At) -> Result<(String, String), String> {
         let name = |y: Option<usize>| y.and_then(|y| self.column.at(y)).map(|b| b.name.clone());
         match (name(y.checked_sub(1)), name(Some(y + 1))) {
-            (Some(above), Some(below)) if self.column.left < x && x < self.column.right => Ok((above, below)),
+            (Some(above), Some(below)) if self.column.left < x && x < self.column.right => {
+                Ok((above, below))
+            }
             _ => Err(format!("the arrow at {x},{y} is not between two boxes")),
         }
     }
@@ -258,7 +294,9 @@ impl Tracer<'_> {
     /// A label one blank away from an arrow; two blanks or the page's end finish it, a line must not.
     fn label_beside(&mut self, arrow: At, way: Way) -> Result<String, String> {
         let mut clusters: Vec<String> = Vec::new();
-        let Ok(mut at) = way.from(arrow) else { return Ok(String::new()) };
+        let Ok(mut at) = way.from(arrow) else {
+            return Ok(String::new());
+        };
         let mut blanks = 0;
         loop {
             let cluster = self.page.at(at).to_owned();
@@ -266,7 +304,13 @@ impl Tracer<'_> {
             if self.owners.contains_key(&at) {
                 // The other arrow of the gap may follow at once where there is no label between the two.
                 let other_arrow = clusters == [" "] && at.1 == arrow.1 && self.is_arrow(at);
-                return if other_arrow { Ok(String::new()) } else { Err(format!("the label of the arrow at {arrow:?} touches a line at {at:?}")) };
+                return if other_arrow {
+                    Ok(String::new())
+                } else {
+                    Err(format!(
+                        "the label of the arrow at {arrow:?} touches a line at {at:?}"
+                    ))
+                };
             }
             clusters.push(cluster);
             if clusters.len() == 1 && blanks == 0 {
@@ -281,9 +325,14 @@ impl Tracer<'_> {
             clusters.reverse();
         }
         let label = clusters.concat().trim_matches(' ').to_owned();
-        let columns = UnicodeWidthStr::width(&*label).max(label.graphemes(true).map(|c| c.width()).sum());
+        let columns =
+            UnicodeWidthStr::width(&*label).max(label.graphemes(true).map(|c| c.width()).sum());
         for step in 0..columns {
-            let x = if way == Way::Left { arrow.0 - 2 - step } else { arrow.0 + 2 + step };
+            let x = if way == Way::Left {
+                arrow.0 - 2 - step
+            } else {
+                arrow.0 + 2 + step
+            };
             self.take((x, arrow.1), Use::Whole)?;
         }
         Ok(label)
@@ -308,7 +357,9 @@ impl Tracer<'_> {
             if glyph == self.page.script.crossing {
                 self.take(at, if way.across() { Use::Across } else { Use::Down })?;
             } else if let Some(found) = self.style(glyph, way) {
-                style = style.and(found).ok_or_else(|| format!("the line changes its style at {at:?}"))?;
+                style = style
+                    .and(found)
+                    .ok_or_else(|| format!("the line changes its style at {at:?}"))?;
                 self.take(at, Use::Whole)?;
             } else {
                 way = self.turn(at, way)?;
@@ -327,7 +378,11 @@ impl Tracer<'_> {
     }
 
     fn style(&self, glyph: &str, way: Way) -> Option<Style> {
-        let glyphs = if way.across() { self.page.script.across } else { self.page.script.down };
+        let glyphs = if way.across() {
+            self.page.script.across
+        } else {
+            self.page.script.down
+        };
         let style = Style(glyphs.map(|g| g == glyph));
         (style != Style([false; 3])).then_some(style)
     }
@@ -356,7 +411,9 @@ impl Tracer<'_> {
         match (left, self.is_line((x + 1, y))) {
             (true, false) => Ok(Way::Left),
             (false, true) => Ok(Way::Right),
-            _ => Err(format!("the corner at {x},{y} may be read in two ways, or none")),
+            _ => Err(format!(
+                "the corner at {x},{y} may be read in two ways, or none"
+            )),
         }
     }
 
@@ -371,30 +428,50 @@ impl Tracer<'_> {
         if columns.is_empty() {
             return Ok(String::new());
         }
-        let tail = if way == Way::Left { columns.start } else { columns.end - 1 };
+        let tail = if way == Way::Left {
+            columns.start
+        } else {
+            columns.end - 1
+        };
         let exits = self.page.at((tail, y)) == self.page.script.exit;
-        let joins = self.style(self.page.at((tail, y)), way).is_some_and(|found| style.and(found).is_some());
+        let joins = self
+            .style(self.page.at((tail, y)), way)
+            .is_some_and(|found| style.and(found).is_some());
         if !exits && !joins {
             return Err(format!("the line doesn't reach its source at {tail},{y}"));
         }
         for x in columns.clone() {
             self.take((x, y), Use::Whole)?;
         }
-        let columns = if way == Way::Left { columns.start + 1..columns.end } else { columns.start..columns.end - 1 };
+        let columns = if way == Way::Left {
+            columns.start + 1..columns.end
+        } else {
+            columns.start..columns.end - 1
+        };
         let text = self.page.text(y, columns);
         match self.page.script.padded && !text.is_empty() {
             false => bare(&text),
-            true => bare(text.strip_prefix(' ').and_then(|t| t.strip_suffix(' ')).ok_or_else(|| format!("{text:?} touches its line"))?),
+            true => bare(
+                text.strip_prefix(' ')
+                    .and_then(|t| t.strip_suffix(' '))
+                    .ok_or_else(|| format!("{text:?} touches its line"))?,
+            ),
         }
     }
 
     fn box_at(&self, y: usize) -> Result<String, String> {
-        self.column.at(y).map(|b| b.name.clone()).ok_or_else(|| format!("row {y}: a line ends beside no box"))
+        self.column
+            .at(y)
+            .map(|b| b.name.clone())
+            .ok_or_else(|| format!("row {y}: a line ends beside no box"))
     }
 
     fn take(&mut self, at: At, used: Use) -> Result<(), String> {
         let owners = self.owners.entry(at).or_default();
-        if owners.iter().any(|other| *other == Use::Whole || used == Use::Whole || *other == used) {
+        if owners
+            .iter()
+            .any(|other| *other == Use::Whole || used == Use::Whole || *other == used)
+        {
             return Err(format!("two things use the cell {at:?}"));
         }
         owners.push(used);
@@ -405,7 +482,8 @@ impl Tracer<'_> {
     fn nothing_is_left(&self) -> Result<(), String> {
         for (y, row) in self.page.cells.iter().enumerate() {
             for x in (0..row.len()).filter(|&x| row[x] != " ") {
-                let boxed = self.column.at(y).is_some() && self.column.left <= x && x <= self.column.right;
+                let boxed =
+                    self.column.at(y).is_some() && self.column.left <= x && x <= self.column.right;
                 match self.owners.get(&(x, y)).map(Vec::as_slice) {
                     None if boxed => {}
                     Some([Use::Whole]) | Some([_, _]) if !boxed => {}

@@ -5,10 +5,8 @@
 
 mod canvas;
 mod drawing;
-mod ends;
 mod export;
 mod glyphs;
-mod lanes;
 mod layout;
 mod spine;
 mod words;

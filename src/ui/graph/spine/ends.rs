@@ -1,7 +1,7 @@
 //! Which side of its boxes each edge of a spine uses, and in which order the ends meet the border. Knows nothing of rows
 //! and columns.
 
-use super::{EdgeKind, Graph};
+use crate::ui::graph::{EdgeKind, Graph};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Flow {
@@ -18,7 +18,7 @@ pub struct End {
 
 /// The edges that cross the gap below a node: at most one each way.
 #[derive(Clone, Copy, Debug, Default)]
-pub struct Straight {
+pub struct Gap {
     pub down: Option<usize>,
     pub up: Option<usize>,
 }
@@ -27,17 +27,18 @@ pub struct Straight {
 pub struct Ends {
     pub left: Vec<Vec<End>>,
     pub right: Vec<Vec<End>>,
-    pub straight: Vec<Straight>,
+    /// Below each node.
+    pub gaps: Vec<Gap>,
 }
 
 impl Ends {
     /// Ends are ordered so that of two edges at a node the shorter one runs inside the longer one and doesn't cross it.
     pub fn of(graph: &Graph) -> Ends {
         let nodes = graph.nodes.len();
-        let mut straight = vec![Straight::default(); nodes];
+        let mut gaps = vec![Gap::default(); nodes];
         let (mut forward, mut back, mut loops) = (Vec::new(), Vec::new(), Vec::new());
         for (i, edge) in graph.edges.iter().enumerate() {
-            if edge.from.max(edge.to) >= nodes || goes_straight(graph, i, &mut straight) {
+            if edge.from.max(edge.to) >= nodes || goes_straight(graph, i, &mut gaps) {
                 continue;
             }
             match edge.from.cmp(&edge.to) {
@@ -56,18 +57,14 @@ impl Ends {
         add(graph, Flow::Out, &forward, &mut right);
         add(graph, Flow::Out, &back, &mut left);
         add(graph, Flow::In, &back, &mut left);
-        Ends {
-            left,
-            right,
-            straight,
-        }
+        Ends { left, right, gaps }
     }
 }
 
 /// Takes the gap for an edge between neighbours if it is still free. An exit needs a line, for its circle.
-fn goes_straight(graph: &Graph, i: usize, straight: &mut [Straight]) -> bool {
+fn goes_straight(graph: &Graph, i: usize, gaps: &mut [Gap]) -> bool {
     let edge = &graph.edges[i];
-    let gap = &mut straight[edge.from.min(edge.to)];
+    let gap = &mut gaps[edge.from.min(edge.to)];
     let place = match (edge.from, edge.to) {
         _ if edge.kind == EdgeKind::Exit => return false,
         (from, to) if from + 1 == to => &mut gap.down,
