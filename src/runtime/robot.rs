@@ -4,7 +4,8 @@
 use std::collections::HashSet;
 use std::sync::Arc;
 
-use mlua::{Function, LuaSerdeExt, SerializeOptions, Table};
+use mlua::serde::{LuaSerdeExt, SerializeOptions};
+use mlua::{Function, Table};
 use serde_json::{Value, json};
 
 use super::engine::Input;

@@ -1,5 +1,7 @@
 //! A program file that runs: its engine's thread, and a watch on the file whose every save becomes a command.
 
+use std::fmt;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
@@ -14,6 +16,23 @@ use crate::model::Robot;
 use crate::runtime::record::Finding;
 use crate::runtime::{Command, Options};
 use crate::syntax::Source;
+
+/// Why a session can't begin, as one line.
+#[derive(Debug)]
+pub enum NotStarted {
+    Unreadable(Unreadable),
+    /// The system gives no more threads.
+    System(io::Error),
+}
+
+impl fmt::Display for NotStarted {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            NotStarted::Unreadable(why) => why.fmt(f),
+            NotStarted::System(error) => write!(f, "the system is short of something: {error}"),
+        }
+    }
+}
 
 #[derive(Clone, Debug)]
 pub struct Setup {
@@ -33,10 +52,10 @@ pub struct Session {
 impl Session {
     /// Starts the program of a file, whether it can be read as one or not: a save can mend it. Fails only where there is
     /// no text to be had.
-    pub fn start(setup: Setup, news: impl Fn(News) + Send + 'static) -> Result<Session, Unreadable> {
+    pub fn start(setup: Setup, news: impl Fn(News) + Send + 'static) -> Result<Session, NotStarted> {
         let source = match loader::read(&setup.file) {
             Err(Unreadable::Empty { .. }) => Source::new(setup.file.display().to_string(), ""),
-            read => read?,
+            read => read.map_err(NotStarted::Unreadable)?,
         };
         let folder = folder(&setup.file);
         let workshop = Workshop { folder: folder.clone(), seed: setup.options.seed, robots: Robots::AsProgrammed };
@@ -50,8 +69,8 @@ impl Session {
         });
         let commands = engine.commands().clone();
         let edits = move || edit(source, &inbox, Compiler::new(setup.robots), &commands);
-        std::thread::Builder::new().name("edits".to_string()).spawn(edits).map_err(Unreadable::from)?;
-        Ok(Session { _watch: watch.map_err(Unreadable::from)?, engine })
+        std::thread::Builder::new().name("edits".to_string()).spawn(edits).map_err(NotStarted::System)?;
+        Ok(Session { _watch: watch.map_err(NotStarted::System)?, engine })
     }
 
     pub fn commands(&self) -> &Commands {
