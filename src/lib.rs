@@ -1,3 +1,4 @@
 //! Live Robot Programming for the terminal. Each layer may use those before it, and knows nothing of those after it.
 
+pub mod lua;
 pub mod syntax;
