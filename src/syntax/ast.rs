@@ -148,10 +148,7 @@ pub enum Trigger {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Timeout {
     /// Milliseconds, as written in the text: not negative, finite.
-    Number {
-        ms: f64,
-        span: Span,
-    },
+    Number { ms: f64, span: Span },
     Variable(Name),
     Block(Block),
 }
