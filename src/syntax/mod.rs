@@ -2,6 +2,7 @@
 
 pub mod ast;
 pub mod diagnostic;
+pub mod nearest;
 pub mod source;
 
 pub use diagnostic::{Code, Diagnostic, Severity};
