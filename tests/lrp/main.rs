@@ -1,6 +1,9 @@
 //! All integration tests of the package, in one binary.
 
+mod editor;
 mod loader;
+mod quiet;
 mod settling;
 mod signals;
+mod terminal;
 mod watch;
