@@ -2,3 +2,8 @@
 
 pub mod graph;
 pub mod machine_graph;
+pub mod editor;
+pub mod foreground;
+pub mod input;
+pub mod quiet;
+pub mod terminal;

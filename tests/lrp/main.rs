@@ -3,3 +3,10 @@
 mod graph;
 mod tracer;
 mod lua;
+mod editor;
+mod loader;
+mod quiet;
+mod settling;
+mod signals;
+mod terminal;
+mod watch;
