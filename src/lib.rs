@@ -1,5 +1,6 @@
 //! Live Robot Programming for the terminal. Each layer may use those before it, and knows nothing of those after it.
 
-pub mod syntax;
 pub mod model;
 pub mod runtime;
+pub mod syntax;
+pub mod ui;
