@@ -4,6 +4,7 @@
 pub mod action;
 pub mod app;
 pub mod format;
+pub mod graph;
 pub mod key;
 pub mod layout;
 pub mod panes;

@@ -1,0 +1,4 @@
+//! All integration tests of the package, in one binary.
+
+mod graph;
+mod tracer;
