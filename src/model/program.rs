@@ -4,7 +4,7 @@ use std::ops::Index;
 use std::sync::Arc;
 
 use super::ids::*;
-use crate::syntax::{Source, Span};
+use crate::syntax::{Diagnostic, Source, Span};
 
 /// Elements that refer to something that doesn't exist keep the name as written and are skipped when run.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -24,6 +24,8 @@ pub struct Program {
     pub bridges: Vec<Bridge>,
     pub on_pause: Option<BlockId>,
     pub on_resume: Option<BlockId>,
+    /// What the checks found; none of it keeps the program from running.
+    pub findings: Vec<Diagnostic>,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -145,10 +147,21 @@ pub struct Block {
     pub code: Arc<str>,
     /// The inside of the brackets.
     pub span: Span,
-    /// None: top level.
+    /// The scope it is written in; none at top level.
     pub machine: Option<MachineId>,
+    pub owner: Owner,
     /// The variables it reads or writes, found through its scopes.
     pub uses: Vec<VarId>,
+}
+
+/// The element a block is written in.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Owner {
+    Program,
+    Var(VarId),
+    Event(EventId),
+    State(StateId),
+    Transition(TransitionId),
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -203,6 +216,21 @@ impl Program {
     pub fn var(&self, path: &str) -> Option<VarId> {
         let found = self.vars.iter().position(|var| &*var.path == path)?;
         Some(VarId(found as u32))
+    }
+
+    /// The path of the state, event, variable or machine that a block is written in; empty at top level.
+    pub fn owner_path(&self, block: BlockId) -> Arc<str> {
+        self.owner_path_of(&self[block])
+    }
+
+    pub fn owner_path_of(&self, block: &Block) -> Arc<str> {
+        match block.owner {
+            Owner::Program => Arc::default(),
+            Owner::Var(var) => self[var].path.clone(),
+            Owner::Event(event) => self[event].path.clone(),
+            Owner::State(state) => self[state].path.clone(),
+            Owner::Transition(transition) => self[self[transition].machine].path.clone(),
+        }
     }
 
     pub fn state_named(&self, machine: MachineId, name: &str) -> Option<StateId> {

@@ -4,6 +4,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
+use super::record::Finding;
 use crate::model::Program;
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -12,6 +13,8 @@ pub enum Command {
     /// A program that can be read; what of it is wrong is reported and skipped.
     #[serde(skip)]
     Load(Arc<Program>),
+    /// A text that can't be read as a program: it is reported, and what runs goes on.
+    Reject { findings: Vec<Finding> },
     Pause,
     Resume,
     /// Exactly one step, while paused.

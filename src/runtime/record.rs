@@ -7,6 +7,7 @@ use serde_json::Value;
 
 use super::command::Command;
 use super::time::Time;
+pub use crate::model::change::{Change, Element, Op};
 use crate::model::Program;
 
 type Path = Arc<str>;
@@ -79,34 +80,6 @@ pub struct Load {
 pub struct File {
     pub name: Path,
     pub text: Path,
-}
-
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
-pub struct Change {
-    pub op: Op,
-    pub kind: Element,
-    pub path: Path,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Op {
-    Added,
-    Removed,
-    Changed,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Element {
-    Bridge,
-    Variable,
-    Machine,
-    State,
-    Event,
-    Transition,
-    Spawn,
-    Action,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
