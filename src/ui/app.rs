@@ -9,7 +9,9 @@ mod reading;
 mod typing;
 mod values;
 
+use std::cell::RefCell;
 use std::collections::BTreeSet;
+use std::rc::Rc;
 use std::sync::Arc;
 
 use crossterm::event::{KeyEvent, KeyEventKind};
@@ -21,6 +23,7 @@ pub use typing::Typing;
 use self::follow::Follow;
 use super::action;
 use super::key::Key;
+use super::panes::diagram::Diagram;
 use super::layout::{Extent, Figure, Layout, Pane, Simulated, Wish};
 use super::scope;
 use super::theme::Theme;
@@ -93,7 +96,11 @@ pub struct App {
     values_top: usize,
     detail_top: usize,
     dirty: bool,
+    diagram: RefCell<Option<(DiagramKey, Rc<Diagram>)>>,
 }
+
+/// What a drawing depends on: which program, which machine, how much room.
+type DiagramKey = (u64, MachineId, Size);
 
 #[derive(Clone, Debug)]
 pub enum Overlay {
@@ -125,6 +132,7 @@ impl App {
             values_top: 0,
             detail_top: 0,
             dirty: true,
+            diagram: RefCell::new(None),
         }
     }
 
@@ -270,6 +278,20 @@ impl App {
     pub fn layout(&self, area: Rect) -> Option<Layout> {
         let simulated = if self.view.world.is_some() { Simulated::World } else { Simulated::Nothing };
         Layout::new(area, Wish { focus: self.focus, figure: self.figure, extent: self.extent, simulated })
+    }
+
+    /// The drawing of a machine for an area: kept from the last frame where nothing changed.
+    pub fn diagram(&self, program: &Program, machine: MachineId, area: Rect) -> Rc<Diagram> {
+        let key = (self.view.loads, machine, area.as_size());
+        let mut kept = self.diagram.borrow_mut();
+        match &*kept {
+            Some((of, diagram)) if *of == key => diagram.clone(),
+            _ => {
+                let diagram = Rc::new(Diagram::new(program, machine, area.width, area.height));
+                *kept = Some((key, diagram.clone()));
+                diagram
+            }
+        }
     }
 
     fn program_changed(&mut self, before: Option<Arc<Program>>) {

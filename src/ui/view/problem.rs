@@ -84,6 +84,11 @@ impl Problem {
         }
     }
 
+    /// Its line is not in the program that runs.
+    pub fn is_of_rejected_text(&self) -> bool {
+        self.origin == Origin::Rejected
+    }
+
     /// Whether it belongs to the element of this path or to something inside it.
     pub fn concerns(&self, path: &str) -> bool {
         !self.state.is_empty() && within(&self.state, path)

@@ -1,6 +1,7 @@
 //! A simulator's world and where its robot is and has been.
 
 use std::collections::VecDeque;
+use std::sync::Arc;
 
 use serde_json::Value;
 
@@ -19,6 +20,8 @@ pub struct World {
     pub bridge: Path,
     pub name: Path,
     pub text: Path,
+    /// None where the text isn't a world.
+    pub map: Option<Arc<lrp_sim::World>>,
     /// The input that carries the pose.
     pub pose_input: Path,
     /// None until the robot tells where it is.
@@ -43,6 +46,7 @@ impl World {
             bridge: bridge.clone(),
             name: world.name.clone(),
             text: world.text.clone(),
+            map: lrp_sim::World::parse(&world.text).ok().map(Arc::new),
             pose_input: world.pose.clone(),
             pose: None,
             trail: VecDeque::new(),
