@@ -1,4 +1,7 @@
 //! All integration tests of the package, in one binary.
 
+mod frames;
 mod graph;
+mod program;
+mod story;
 mod tracer;
