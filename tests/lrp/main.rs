@@ -1,6 +1,9 @@
 //! All integration tests of the package, in one binary.
 
+mod frames;
 mod graph;
+mod program;
+mod story;
 mod tracer;
 mod lua;
 mod editor;
