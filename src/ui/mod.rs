@@ -13,6 +13,7 @@ pub mod quiet;
 pub mod terminal;
 pub mod key;
 pub mod layout;
+pub mod live;
 pub mod panes;
 pub mod pen;
 pub mod scope;
