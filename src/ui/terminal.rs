@@ -126,8 +126,8 @@ impl Shared {
         if !self.ours.swap(false, Ordering::AcqRel) {
             return;
         }
-        let _ = execute!(out, ResetColor, Show, LeaveAlternateScreen);
         let _ = disable_raw_mode();
+        let _ = execute!(out, ResetColor, Show, LeaveAlternateScreen);
         for panic in self
             .kept
             .lock()
