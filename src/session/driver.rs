@@ -75,7 +75,7 @@ impl Driver {
         let held = matches!(command, Command::Load(_) | Command::Restart | Command::TransitionTo { .. } | Command::JumpTo { .. });
         let delivery = if held && self.engine.is_paused() { Delivery::Held } else { Delivery::Now };
         let result = match command {
-            Command::Load(program) => self.load(Arc::unwrap_or_clone(program), sink),
+            Command::Load(program) => self.load(Arc::unwrap_or_clone(program)),
             Command::PutAtStart { ref bridge } => {
                 self.put_at_start(bridge);
                 self.engine.command(command)
@@ -123,7 +123,7 @@ impl Driver {
         }
     }
 
-    fn load(&mut self, mut program: Program, sink: Sink) -> Result<(), Refused> {
+    fn load(&mut self, mut program: Program) -> Result<(), Refused> {
         let states = self.connect(&mut program);
         for robot in &self.robots {
             let (description, stale) = match &robot.bridge {
@@ -132,11 +132,11 @@ impl Driver {
             };
             self.engine.describe(&robot.form.name, &description, stale);
         }
+        let result = self.engine.command(Command::Load(Arc::new(program)));
         for state in states {
             self.engine.say(What::Bridge(state));
         }
-        self.hand_over(Delivery::Now, sink);
-        self.engine.command(Command::Load(Arc::new(program)))
+        result
     }
 
     /// Makes the robots whose form is new or changed; the others stay as they are.

@@ -40,9 +40,30 @@ enum Message {
     End,
 }
 
-pub struct EngineThread {
+/// The way to an engine's thread, from any other.
+#[derive(Clone)]
+pub struct Commands {
     messages: Sender<Message>,
     stoppers: Arc<Mutex<Vec<Stopper>>>,
+}
+
+impl Commands {
+    pub fn send(&self, command: Command) {
+        if command == Command::Runstop {
+            self.halt();
+        }
+        // A thread that has ended has stopped its robots and said so.
+        let _ = self.messages.send(Message::Command(command));
+    }
+
+    /// Halts every robot at once, without asking the engine.
+    pub fn halt(&self) {
+        halt(&self.stoppers);
+    }
+}
+
+pub struct EngineThread {
+    commands: Commands,
     thread: Option<JoinHandle<()>>,
 }
 
@@ -70,33 +91,18 @@ impl EngineThread {
             news(News::Ended(end));
         };
         let thread = std::thread::Builder::new().name("engine".to_string()).spawn(body).expect("a thread can be started");
-        EngineThread { messages, stoppers, thread: Some(thread) }
+        EngineThread { commands: Commands { messages, stoppers }, thread: Some(thread) }
     }
 
-    pub fn send(&self, command: Command) {
-        if command == Command::Runstop {
-            halt(&self.stoppers);
-        }
-        // A thread that has ended has stopped its robots and said so.
-        let _ = self.messages.send(Message::Command(command));
-    }
-
-    /// Halts every robot at once, without asking the engine.
-    pub fn halt(&self) {
-        halt(&self.stoppers);
-    }
-
-    /// A handle that halts the robots, for whoever notices that something is very wrong.
-    pub fn halter(&self) -> impl Fn() + Send + Sync + Clone + 'static {
-        let stoppers = Arc::clone(&self.stoppers);
-        move || halt(&stoppers)
+    pub fn commands(&self) -> &Commands {
+        &self.commands
     }
 }
 
 impl Drop for EngineThread {
     fn drop(&mut self) {
-        self.halt();
-        let _ = self.messages.send(Message::End);
+        self.commands.halt();
+        let _ = self.commands.messages.send(Message::End);
         if let Some(thread) = self.thread.take() {
             let _ = thread.join();
         }

@@ -5,7 +5,7 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
 
-use serde_json::json;
+use serde::Serialize;
 
 use crate::runtime::Record;
 use crate::runtime::record;
@@ -22,6 +22,18 @@ pub struct Header<'a> {
     pub rate: f64,
     pub seed: u64,
     pub clock: Clock,
+}
+
+#[derive(Serialize)]
+struct FirstLine<'a> {
+    /// The version of the format.
+    lrp: u32,
+    /// Milliseconds since 1970.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    start: Option<u64>,
+    rate: f64,
+    seed: u64,
+    files: &'a [record::File],
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -42,12 +54,11 @@ impl Trace {
     }
 
     pub fn header(&mut self, header: &Header) {
-        let mut line = json!({ "lrp": 1, "files": header.files, "rate": header.rate, "seed": header.seed });
-        if header.clock == Clock::Real {
+        let start = (header.clock == Clock::Real).then(|| {
             let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-            line["start"] = json!(now.as_millis() as u64);
-        }
-        self.line(&line);
+            now.as_millis() as u64
+        });
+        self.line(&FirstLine { lrp: 1, start, rate: header.rate, seed: header.seed, files: header.files });
     }
 
     pub fn record(&mut self, record: &Record) {

@@ -3,6 +3,7 @@
 
 pub mod action;
 pub mod app;
+pub mod editor;
 pub mod format;
 pub mod graph;
 pub mod key;
@@ -10,6 +11,7 @@ pub mod layout;
 pub mod panes;
 pub mod pen;
 pub mod scope;
+pub mod terminal;
 pub mod theme;
 pub mod tree;
 pub mod view;

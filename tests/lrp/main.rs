@@ -5,3 +5,4 @@ mod graph;
 mod program;
 mod story;
 mod tracer;
+mod lua;

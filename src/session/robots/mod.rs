@@ -95,3 +95,16 @@ fn problem(span: Span, message: String) -> Problems {
 fn read_text(path: &Path) -> Result<String, String> {
     std::fs::read_to_string(path).map_err(|error| error.to_string())
 }
+
+/// What a kind offers under its own names.
+pub fn offer(kind: &str) -> Option<Description> {
+    (kind == "sim").then(|| sim::description(&sim::Names::of(&Value::Null)))
+}
+
+/// What a kind of robot is, in a line.
+pub fn summary(kind: &str) -> &'static str {
+    match kind {
+        "sim" => "a robot with two driven wheels in a small world read from a text file",
+        _ => "",
+    }
+}
