@@ -4,12 +4,16 @@
 pub mod action;
 pub mod app;
 pub mod editor;
+pub mod foreground;
 pub mod format;
 pub mod graph;
+pub mod input;
 pub mod key;
 pub mod layout;
+pub mod machine_graph;
 pub mod panes;
 pub mod pen;
+pub mod quiet;
 pub mod scope;
 pub mod terminal;
 pub mod theme;
