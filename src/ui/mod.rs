@@ -3,6 +3,8 @@
 
 pub mod action;
 pub mod app;
+pub mod editor;
+pub mod foreground;
 pub mod format;
 pub mod graph;
 pub mod machine_graph;
