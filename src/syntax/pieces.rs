@@ -58,7 +58,6 @@ impl Piece {
 
 /// Cuts up the whole text; what is wrong with single pieces is added to the findings.
 pub fn pieces(text: &str, file: FileId, findings: &mut Findings) -> Vec<Piece> {
-    report_control_characters(text, file, findings);
     let mut cutter = Cutter {
         text,
         file,
@@ -80,11 +79,10 @@ pub fn pieces(text: &str, file: FileId, findings: &mut Findings) -> Vec<Piece> {
     cutter.pieces
 }
 
-fn report_control_characters(text: &str, file: FileId, findings: &mut Findings) {
+/// What to say of a text with control characters in it: it is hardly a program, and nothing more is said of it.
+pub fn control_characters(text: &str, file: FileId) -> Option<Diagnostic> {
     let mut controls = text.char_indices().filter(|&(_, c)| is_control(c));
-    let Some((at, first)) = controls.next() else {
-        return;
-    };
+    let (at, first) = controls.next()?;
     let more = match controls.count() {
         0 => String::new(),
         1 => ", and another one further on".to_string(),
@@ -96,14 +94,12 @@ fn report_control_characters(text: &str, file: FileId, findings: &mut Findings) 
     } else {
         format!("control character U+{:04X}", first as u32)
     };
-    findings.add(
-        Diagnostic::error(
-            Code::StrayCharacter,
-            span,
-            format!("a {name} stands here{more}"),
-        )
-        .help("a program is plain text: remove it, or check that this is the right file"),
+    let error = Diagnostic::error(
+        Code::StrayCharacter,
+        span,
+        format!("a {name} stands here{more}"),
     );
+    Some(error.help("a program is plain text: remove it, or check that this is the right file"))
 }
 
 fn is_control(c: char) -> bool {
@@ -255,10 +251,11 @@ impl Cutter<'_> {
     fn quoted(&mut self, quote: char, findings: &mut Findings) -> PieceKind {
         let start = self.at;
         let rest = &self.text[start + 1..];
-        let line = &rest[..rest.find(['\n', '\r']).unwrap_or(rest.len())];
-        if let Some(i) = line.find(quote) {
-            return self.take(i + 2, PieceKind::Text);
+        let end = rest.find(['\n', '\r', ';', quote]).unwrap_or(rest.len());
+        if rest[end..].starts_with(quote) {
+            return self.take(end + 2, PieceKind::Text);
         }
+        let line = &rest[..end];
         let other = if quote == '"' { '\'' } else { '"' };
         let (length, help) = match line.find(other) {
             Some(i) => (
@@ -266,10 +263,17 @@ impl Cutter<'_> {
                 format!("it begins with `{quote}`, so end it with `{quote}` too"),
             ),
             None => {
-                let end = line.find([')', ';']).unwrap_or(line.len());
+                let length = line[..line.find(')').unwrap_or(line.len())]
+                    .trim_end()
+                    .len();
+                let reason = if rest[line.len()..].starts_with(';') {
+                    "`;` begins a comment"
+                } else {
+                    "it ends with its line"
+                };
                 (
-                    line[..end].trim_end().len(),
-                    format!("add `{quote}` where it ends: a string can't go on in the next line"),
+                    length,
+                    format!("add `{quote}` where the string ends: {reason}"),
                 )
             }
         };
