@@ -136,7 +136,8 @@ impl<'a> Form<'a> {
     /// The name of a form that holds others. Takes with it what is stuck to it or stands in its place.
     pub fn title(&mut self, what: &str) -> Option<Name> {
         let stuck = self.stuck_together();
-        let after = &self.rest[stuck.len()..];
+        let in_its_place = matches!(self.rest.first(), Some(Node::Leaf(_)));
+        let after = &self.rest[stuck.len().max(usize::from(in_its_place))..];
         let name = match stuck {
             [first, _, ..] if first.is(PieceKind::Word) => {
                 let last = &stuck[stuck.len() - 1];

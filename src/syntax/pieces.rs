@@ -4,6 +4,7 @@
 use super::block::{BlockEnd, Culprit, end_of_block};
 use super::diagnostic::{Code, Diagnostic};
 use super::findings::Findings;
+use super::keyword::Keyword;
 use super::layout::column;
 use super::source::{FileId, Span};
 
@@ -262,20 +263,12 @@ impl Cutter<'_> {
                 i + 1,
                 format!("it begins with `{quote}`, so end it with `{quote}` too"),
             ),
-            None => {
-                let length = line[..line.find(')').unwrap_or(line.len())]
+            None => (
+                line[..line.find(')').unwrap_or(line.len())]
                     .trim_end()
-                    .len();
-                let reason = if rest[line.len()..].starts_with(';') {
-                    "`;` begins a comment"
-                } else {
-                    "it ends with its line"
-                };
-                (
-                    length,
-                    format!("add `{quote}` where the string ends: {reason}"),
-                )
-            }
+                    .len(),
+                self.where_to_close(quote, &rest[end..]),
+            ),
         };
         self.at += 1 + length;
         findings.add(
@@ -287,6 +280,19 @@ impl Cutter<'_> {
             .help(help),
         );
         PieceKind::UnclosedText
+    }
+
+    fn where_to_close(&self, quote: char, after: &str) -> String {
+        let last = self.pieces.iter().rev().find(|piece| !piece.is_trivia());
+        if last.is_none_or(|piece| &self.text[piece.range()] != Keyword::Import.name()) {
+            return format!("only a file's name after `import` has quotes: remove `{quote}`");
+        }
+        let reason = if after.starts_with(';') {
+            "`;` begins a comment"
+        } else {
+            "it can't go on in the next line"
+        };
+        format!("add `{quote}` where the string ends: {reason}")
     }
 
     fn block(&mut self, findings: &mut Findings) -> PieceKind {
