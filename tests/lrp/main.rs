@@ -1,15 +1,16 @@
 //! All integration tests of the package, in one binary.
 
+mod editor;
 mod frames;
 mod graph;
-mod program;
-mod story;
-mod tracer;
-mod lua;
-mod editor;
 mod loader;
+mod lua;
+mod program;
 mod quiet;
 mod settling;
 mod signals;
+mod story;
+mod syntax;
 mod terminal;
+mod tracer;
 mod watch;
