@@ -148,7 +148,10 @@ pub enum Trigger {
 #[derive(Clone, Debug, PartialEq)]
 pub enum Timeout {
     /// Milliseconds, as written in the text: not negative, finite.
-    Number { ms: f64, span: Span },
+    Number {
+        ms: f64,
+        span: Span,
+    },
     Variable(Name),
     Block(Block),
 }

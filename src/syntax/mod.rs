@@ -2,7 +2,25 @@
 
 pub mod ast;
 pub mod diagnostic;
+pub mod keyword;
+pub mod lua_tokens;
+pub mod nearest;
+pub mod parser;
+pub mod pieces;
+pub mod reader;
+pub mod render;
 pub mod source;
 
+mod block;
+mod findings;
+mod form;
+mod layout;
+mod leaves;
+mod misplaced;
+mod names;
+mod repair;
+mod transition;
+
 pub use diagnostic::{Code, Diagnostic, Severity};
+pub use parser::{Parsed, parse};
 pub use source::{FileId, Source, Span};

@@ -1,0 +1,70 @@
+//! What a name may look like, in the language and in Lua, and what to say where it doesn't. Knows nothing of forms.
+
+use super::diagnostic::{Code, Diagnostic};
+use super::lua_tokens::{is_keyword, is_name};
+use super::source::Span;
+
+/// Names of machines, states, events and the like: letters, digits, `_` and `-`.
+pub fn check_name(word: &str, span: Span, what: &str) -> Result<(), Diagnostic> {
+    let help = "use letters, digits, `_` and `-`";
+    if let Some(c) = word.chars().find(|&c| !is_name_char(c)) {
+        let message = format!("`{}` can't name {what}: it holds `{c}`", shortened(word));
+        return Err(Diagnostic::error(Code::BadName, span, message).help(help));
+    }
+    if !word.contains(|c| c != '-') {
+        let message = format!(
+            "`{}` can't name {what}: it has no letter or digit",
+            shortened(word)
+        );
+        return Err(Diagnostic::error(Code::BadName, span, message).help(help));
+    }
+    Ok(())
+}
+
+/// Names that blocks see: they must be Lua's.
+pub fn check_lua_name(word: &str, span: Span, what: &str) -> Result<(), Diagnostic> {
+    let shown = shortened(word);
+    if is_keyword(word) {
+        let message =
+            format!("`{shown}` can't name {what}: it is a keyword of Lua, and blocks use the name");
+        return Err(Diagnostic::error(Code::BadName, span, message)
+            .help(format!("choose another, such as `{word}_`")));
+    }
+    if !is_name(word) {
+        let message = format!(
+            "`{shown}` can't name {what}: blocks use the name, so it must be a name in Lua"
+        );
+        let help = match suggestion(word) {
+            Some(better) => {
+                format!("use letters, digits and `_`, not beginning with a digit: `{better}`")
+            }
+            None => {
+                "use the letters a to z, digits and `_`, not beginning with a digit".to_string()
+            }
+        };
+        return Err(Diagnostic::error(Code::BadName, span, message).help(help));
+    }
+    Ok(())
+}
+
+fn is_name_char(c: char) -> bool {
+    // Letters may come with accents that are characters of their own.
+    c.is_alphanumeric() || matches!(c, '_' | '-' | '\u{300}'..='\u{36f}')
+}
+
+/// The word with what Lua doesn't take replaced, if that makes a name of it.
+fn suggestion(word: &str) -> Option<String> {
+    let mut better = word.replace(['-', '.'], "_");
+    if better.starts_with(|c: char| c.is_ascii_digit()) {
+        better.insert(0, '_');
+    }
+    (is_name(&better) && !is_keyword(&better) && better.contains(|c| c != '_')).then_some(better)
+}
+
+/// As much of a word as fits in a message.
+pub fn shortened(word: &str) -> String {
+    match word.char_indices().nth(40) {
+        Some((i, _)) => format!("{}...", &word[..i]),
+        None => word.to_string(),
+    }
+}
