@@ -56,7 +56,15 @@ type Matched = Result<Option<usize>, Complaint>;
 impl<'a> Matcher<'a> {
     /// `stop` is asked now and then whether to give up.
     pub fn new(subject: &'a [u8], pattern: &'a [u8], stop: &'a dyn Fn() -> bool) -> Self {
-        Self { subject, pattern, stop, steps: 0, depth: 0, level: 0, captures: [(0, Length::Unfinished); CAPTURES] }
+        Self {
+            subject,
+            pattern,
+            stop,
+            steps: 0,
+            depth: 0,
+            level: 0,
+            captures: [(0, Length::Unfinished); CAPTURES],
+        }
     }
 
     /// The end of the match that begins at `start`.
@@ -74,7 +82,11 @@ impl<'a> Matcher<'a> {
     /// Capture `index`, counted from 0, of a match from `start` to `end`; the whole where there are no captures.
     pub fn capture(&self, index: usize, start: usize, end: usize) -> Result<Caught, Complaint> {
         if index >= self.level {
-            return if index == 0 { Ok(Caught::Text(start, end)) } else { Err(Complaint::NoCapture(index + 1)) };
+            return if index == 0 {
+                Ok(Caught::Text(start, end))
+            } else {
+                Err(Complaint::NoCapture(index + 1))
+            };
         }
         match self.captures[index] {
             (_, Length::Unfinished) => Err(Complaint::Unfinished),
@@ -105,7 +117,11 @@ impl<'a> Matcher<'a> {
             return Ok(());
         }
         self.steps = 0;
-        if (self.stop)() { Err(Complaint::Stopped) } else { Ok(()) }
+        if (self.stop)() {
+            Err(Complaint::Stopped)
+        } else {
+            Ok(())
+        }
     }
 
     /// The byte of the pattern, nought at its end.
@@ -135,15 +151,27 @@ impl<'a> Matcher<'a> {
                 (b'(', b')') => return self.open(s, p + 2, Length::Position),
                 (b'(', _) => return self.open(s, p + 1, Length::Unfinished),
                 (b')', _) => return self.close(s, p + 1),
-                (b'$', _) if p + 1 == self.pattern.len() => return Ok((s == self.subject.len()).then_some(s)),
+                (b'$', _) if p + 1 == self.pattern.len() => {
+                    return Ok((s == self.subject.len()).then_some(s));
+                }
                 (ESCAPE, b'b') => self.balance(s, p + 2)?.map(|s| (s, p + 4)),
                 (ESCAPE, b'f') => self.frontier(s, p + 2)?.map(|p| (s, p)),
-                (ESCAPE, digit) if digit.is_ascii_digit() => self.again(s, digit)?.map(|s| (s, p + 2)),
+                (ESCAPE, digit) if digit.is_ascii_digit() => {
+                    self.again(s, digit)?.map(|s| (s, p + 2))
+                }
                 _ => {
                     let end = self.class_end(p)?;
-                    match self.at(end) {
-                        b'?' | b'+' | b'*' | b'-' => return self.repeat(s, p, end),
-                        _ => self.one(s, p, end)?.then_some((s + 1, end)),
+                    match (self.at(end), self.one(s, p, end)?) {
+                        (b'?', true) => match self.find(s + 1, end + 1)? {
+                            None => Some((s, end + 1)),
+                            found => return Ok(found),
+                        },
+                        (b'+', true) => return self.most(s + 1, p, end),
+                        (b'*', true) => return self.most(s, p, end),
+                        (b'-', true) => return self.fewest(s, p, end),
+                        (b'?' | b'*' | b'-', false) => Some((s, end + 1)),
+                        (_, true) => Some((s + 1, end)),
+                        (_, false) => None,
                     }
                 }
             };
@@ -153,23 +181,6 @@ impl<'a> Matcher<'a> {
             }
         }
         Ok(Some(s))
-    }
-
-    fn repeat(&mut self, s: usize, p: usize, end: usize) -> Matched {
-        match self.at(end) {
-            b'?' => {
-                if self.one(s, p, end)?
-                    && let Some(found) = self.find(s + 1, end + 1)?
-                {
-                    return Ok(Some(found));
-                }
-                self.find_items(s, end + 1)
-            }
-            b'-' => self.fewest(s, p, end),
-            b'+' if !self.one(s, p, end)? => Ok(None),
-            b'+' => self.most(s + 1, p, end),
-            _ => self.most(s, p, end),
-        }
     }
 
     fn most(&mut self, s: usize, p: usize, end: usize) -> Matched {
@@ -211,7 +222,9 @@ impl<'a> Matcher<'a> {
     }
 
     fn close(&mut self, s: usize, p: usize) -> Matched {
-        let open = self.captures[..self.level].iter().rposition(|(_, length)| *length == Length::Unfinished);
+        let open = self.captures[..self.level]
+            .iter()
+            .rposition(|(_, length)| *length == Length::Unfinished);
         let open = open.ok_or(Complaint::NothingToClose)?;
         self.captures[open].1 = Length::Bytes(s - self.captures[open].0);
         let found = self.find(s, p)?;
@@ -261,7 +274,9 @@ impl<'a> Matcher<'a> {
     fn again(&mut self, s: usize, digit: u8) -> Matched {
         let number = usize::from(digit - b'0');
         let known = number.checked_sub(1).filter(|index| *index < self.level);
-        let (from, length) = known.map(|index| self.captures[index]).ok_or(Complaint::NoCapture(number))?;
+        let (from, length) = known
+            .map(|index| self.captures[index])
+            .ok_or(Complaint::NoCapture(number))?;
         match length {
             Length::Unfinished => Err(Complaint::NoCapture(number)),
             Length::Position => Ok(None),
@@ -308,7 +323,9 @@ impl<'a> Matcher<'a> {
     /// Whether the item from `p` to `end` matches the byte at `s`.
     fn one(&mut self, s: usize, p: usize, end: usize) -> Result<bool, Complaint> {
         self.step(1)?;
-        let Some(&byte) = self.subject.get(s) else { return Ok(false) };
+        let Some(&byte) = self.subject.get(s) else {
+            return Ok(false);
+        };
         match self.at(p) {
             b'.' => Ok(true),
             ESCAPE => Ok(in_class(byte, self.at(p + 1))),
