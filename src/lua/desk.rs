@@ -10,6 +10,7 @@ use mlua_sys as ffi;
 use super::Block;
 use super::guard::Guard;
 use super::log::Log;
+use crate::syntax::nearest::nearest;
 
 /// A line of a chunk: a block's text, told from others by a number that is never used twice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -79,8 +80,7 @@ impl Desk {
             .and_then(|spot| chunks.get(&spot.chunk))
             .map(|chunk| &*chunk.scope);
         let scope = scope.unwrap_or_default().iter().map(|name| &**name);
-        super::nearest::nearest(name, scope.chain(known.iter().map(String::as_str)))
-            .map(str::to_owned)
+        nearest(name, scope.chain(known.iter().map(String::as_str))).map(str::to_owned)
     }
 }
 

@@ -1,5 +1,7 @@
 //! What can be said of a block without running it. Knows nothing of variables.
 
+use std::sync::LazyLock;
+
 use serde_json::Value;
 
 use super::bytecode::{Kind, Use};
@@ -100,8 +102,10 @@ impl Checker {
 }
 
 /// The names every block has at hand, sorted; those of `Access::System` besides are `io` and `debug`.
-pub fn known_names() -> impl Iterator<Item = &'static str> {
-    KNOWN.iter().map(|(name, _)| *name)
+pub fn known_names() -> &'static [&'static str] {
+    static NAMES: LazyLock<Vec<&str>> =
+        LazyLock::new(|| KNOWN.iter().map(|(name, _)| *name).collect());
+    &NAMES
 }
 
 /// The fields of a library every block has at hand, sorted; none for other names.
@@ -142,26 +146,34 @@ const KNOWN: &[(&str, &[&str])] = &[
             "acos",
             "asin",
             "atan",
+            "atan2",
             "ceil",
             "cos",
+            "cosh",
             "deg",
             "exp",
             "floor",
             "fmod",
+            "frexp",
             "huge",
+            "ldexp",
             "log",
+            "log10",
             "max",
             "maxinteger",
             "min",
             "mininteger",
             "modf",
             "pi",
+            "pow",
             "rad",
             "random",
             "randomseed",
             "sin",
+            "sinh",
             "sqrt",
             "tan",
+            "tanh",
             "tointeger",
             "type",
             "ult",

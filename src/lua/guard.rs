@@ -115,7 +115,7 @@ impl Guard {
     /// Sets the hooks, if the call meant is still running. Called in the signal handler: stores and lua_sethook, which may be used there.
     fn arm(&self) {
         let call = self.call.load(Relaxed);
-        if call % 2 == 0 || call != self.target.load(SeqCst) {
+        if call.is_multiple_of(2) || call != self.target.load(SeqCst) {
             return;
         }
         self.armed.store(call, Relaxed);
@@ -282,7 +282,7 @@ fn watch(guard: &Guard) {
         if call != seen.0 {
             seen = (call, Instant::now());
             guard.overdue.store(0, SeqCst);
-        } else if call % 2 == 1
+        } else if !call.is_multiple_of(2)
             && let Some(over) = seen.1.elapsed().checked_sub(guard.limit)
         {
             guard.overdue.store(over.as_micros().max(1) as u64, SeqCst);

@@ -45,7 +45,8 @@ pub(super) fn relocate(text: &str, desk: &Desk) -> String {
 }
 
 /// What stands before a name in Lua's messages.
-const BEFORE_NAME: [&str; 10] = [
+const BEFORE_NAME: [&str; 11] = [
+    "function '",
     "global '",
     "local '",
     "field '",

@@ -8,7 +8,7 @@ use mlua::{Function, LuaOptions, StdLib, Table};
 use mlua_sys as ffi;
 
 use super::desk::{Desk, desk, spot};
-use super::{Access, bounded, coroutines, log, text};
+use super::{Access, bounded, coroutines, log, search, text};
 
 /// Lua's own functions, behind ours of the same name.
 pub(super) struct Originals {
@@ -64,6 +64,9 @@ pub(super) enum Order {
 const KNOWN_ORDER: &str = include_str!("order.txt");
 const KEYS: &str = "local t, s = {}, {} for i = 1, 24 do t['key' .. i] = i end for k in next, t do s[#s + 1] = k end return table.concat(s, ' ')";
 
+/// Finds the text of a module by its name, or says why it doesn't.
+pub type Finder = Box<dyn Fn(&str) -> Result<String, String>>;
+
 /// Tables the prelude and Rust share.
 pub(super) struct Sandbox {
     pub mlua: mlua::Lua,
@@ -103,10 +106,7 @@ impl Sandbox {
     }
 
     /// The function by which modules are found: their text, or why not.
-    pub fn set_finder(
-        &self,
-        find: Box<dyn Fn(&str) -> Result<String, String>>,
-    ) -> mlua::Result<()> {
+    pub fn set_finder(&self, find: Finder) -> mlua::Result<()> {
         let find = self.mlua.create_function(move |_, name: String| {
             Ok(match find(&name) {
                 Ok(text) => (Some(text), None),
@@ -306,7 +306,17 @@ const FUNCTIONS: &[(&str, Functions)] = &[
             ("error", log::error),
         ],
     ),
-    ("string", &[("format", text::format), ("rep", bounded::rep)]),
+    (
+        "string",
+        &[
+            ("find", search::find),
+            ("format", text::format),
+            ("gmatch", search::gmatch),
+            ("gsub", search::gsub),
+            ("match", search::matched),
+            ("rep", bounded::rep),
+        ],
+    ),
     (
         "table",
         &[
@@ -426,7 +436,7 @@ unsafe fn describe(
     let hint = unsafe { desk(state).suggest(&name, spot(state)) };
     let hint = hint.map_or(String::new(), |hint| format!("; did you mean '{hint}'?"));
     let message = format!("{before}{name}{after}{hint}");
-    let length = message.floor_char_boundary(buffer.len());
+    let length = text::cut(&message, buffer.len());
     buffer[..length].copy_from_slice(&message.as_bytes()[..length]);
     length
 }

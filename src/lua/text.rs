@@ -66,7 +66,7 @@ unsafe fn push_json(state: *mut ffi::lua_State, index: c_int) {
     let mut buffer = [0; 2 * value::BYTES];
     let length = {
         let text = unsafe { value::read(state, index) }.to_string();
-        let length = text.floor_char_boundary(buffer.len());
+        let length = cut(&text, buffer.len());
         buffer[..length].copy_from_slice(&text.as_bytes()[..length]);
         length
     };
@@ -156,6 +156,14 @@ fn next_conversion(form: &[u8], at: &mut usize) -> Option<u8> {
         }
     }
     None
+}
+
+/// How many bytes of a text fit, whole characters only.
+pub(super) fn cut(text: &str, bytes: usize) -> usize {
+    (0..=bytes.min(text.len()))
+        .rev()
+        .find(|at| text.is_char_boundary(*at))
+        .unwrap_or(0)
 }
 
 /// The name of a type, as Lua has it.

@@ -4,6 +4,7 @@
 //! a table with the keys 1..n as an array, any other as an object, its keys sorted. What lies deeper than [`DEPTH`] or
 //! beyond about [`BYTES`] is left out; `"cut"` says how many entries.
 
+use std::cmp::Ordering;
 use std::ffi::c_int;
 
 use mlua_sys as ffi;
@@ -233,20 +234,36 @@ fn float(number: f64) -> Value {
 }
 
 /// A table's key: a copy, as Lua's own would have to stay on its stack.
-#[derive(PartialEq, PartialOrd)]
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
 enum Key {
     Integer(i64),
-    Float(f64),
+    /// Never nan.
+    Float(Ordered),
     Text(Box<[u8]>),
     Bool(bool),
     Other(&'static str),
 }
 
-impl Eq for Key {}
+#[derive(Clone, Copy)]
+struct Ordered(f64);
 
-impl Ord for Key {
-    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
-        self.partial_cmp(other).unwrap_or(std::cmp::Ordering::Equal)
+impl PartialEq for Ordered {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Ordered {}
+
+impl PartialOrd for Ordered {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Ordered {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.0.total_cmp(&other.0)
     }
 }
 
@@ -258,7 +275,7 @@ impl Key {
                 ffi::LUA_TNUMBER if ffi::lua_isinteger(state, -1) != 0 => {
                     Key::Integer(ffi::lua_tointeger(state, -1))
                 }
-                ffi::LUA_TNUMBER => Key::Float(ffi::lua_tonumber(state, -1)),
+                ffi::LUA_TNUMBER => Key::Float(Ordered(ffi::lua_tonumber(state, -1))),
                 ffi::LUA_TSTRING => Key::Text(bytes_at(state, -1).into()),
                 ffi::LUA_TBOOLEAN => Key::Bool(ffi::lua_toboolean(state, -1) != 0),
                 kind => Key::Other(super::text::type_name(kind)),
@@ -269,7 +286,7 @@ impl Key {
     fn name(&self) -> String {
         match self {
             Key::Integer(key) => key.to_string(),
-            Key::Float(key) => key.to_string(),
+            Key::Float(Ordered(key)) => key.to_string(),
             Key::Text(key) => String::from_utf8_lossy(key).into_owned(),
             Key::Bool(key) => key.to_string(),
             Key::Other(kind) => (*kind).to_owned(),
