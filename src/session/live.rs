@@ -86,7 +86,7 @@ impl Session {
 }
 
 pub fn folder(file: &Path) -> PathBuf {
-    file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_path_buf()
+    file.parent().unwrap_or(Path::new("")).to_path_buf()
 }
 
 /// Compiles beside the engine's thread, which only takes finished programs over.
