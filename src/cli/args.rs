@@ -1,0 +1,167 @@
+//! The arguments of each command, with their help.
+
+use std::path::PathBuf;
+use std::time::Duration;
+
+use clap::{ArgAction, Parser, Subcommand, ValueEnum};
+
+use crate::lua::{Access, Limits};
+use crate::model::Robot;
+use crate::runtime::{Options, Time};
+use crate::session::engine_thread::Pacing;
+use crate::session::live::Setup;
+use crate::session::pace::Rate;
+use crate::session::trace::Clock;
+
+/// Live Robot Programming: state machines that change while they run.
+///
+/// `lrp FILE` opens the screen; every save of FILE changes the running program.
+#[derive(Parser)]
+#[command(name = "lrp", version, args_conflicts_with_subcommands = true, arg_required_else_help = true)]
+pub struct Args {
+    #[command(subcommand)]
+    task: Option<Task>,
+    #[command(flatten)]
+    live: Option<RunArgs>,
+}
+
+impl Args {
+    pub fn task(self) -> Task {
+        self.task.or(self.live.map(Task::Live)).expect("clap asks for one of them")
+    }
+}
+
+#[derive(Subcommand)]
+pub enum Task {
+    /// Open the screen on a program and run it (the same as `lrp FILE`)
+    Live(RunArgs),
+    /// Run a program without a screen
+    Run(RunArgs),
+    /// Report what is wrong with programs; exit code 1 if any has errors
+    Check {
+        #[arg(required = true)]
+        files: Vec<PathBuf>,
+        #[arg(long, value_enum, default_value_t = Format::Text)]
+        format: Format,
+    },
+    /// Run behaviour tests (`*_test.lua`) in virtual time; all below the current folder by default
+    Test { paths: Vec<PathBuf> },
+    /// Print the state graph of a machine
+    Graph(GraphArgs),
+    /// Make a first program NAME.lrp to edit
+    New { name: String },
+    /// List the kinds of bridges, or what one offers
+    Bridges { kind: Option<String> },
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub enum Format {
+    Text,
+    Json,
+}
+
+#[derive(clap::Args)]
+pub struct RunArgs {
+    /// The program
+    pub file: PathBuf,
+    /// Steps a second; 0: as fast as possible
+    #[arg(long, value_name = "HZ", default_value = "10", value_parser = rate)]
+    pub rate: Rate,
+    /// Which robot a name stands for, whatever the program says, such as robot=sim
+    #[arg(long, value_name = "NAME=KIND", value_parser = robot)]
+    pub bridge: Vec<Robot>,
+    /// Write the records to a file, a JSON object a line; -: standard output
+    #[arg(long, value_name = "PATH")]
+    pub trace: Option<PathBuf>,
+    /// End after this much program time, such as 500ms, 5s or 2m
+    #[arg(long = "for", value_name = "TIME", value_parser = duration)]
+    pub until: Option<Duration>,
+    /// Virtual time: no waiting, and equal runs give equal records
+    #[arg(long = "virtual", action = ArgAction::SetTrue)]
+    pub virtual_time: bool,
+    /// For everything random: the simulator's noise and math.random
+    #[arg(long, value_name = "N", default_value_t = 1)]
+    pub seed: u64,
+    /// What an edit does to an active state that it changes: restart begins the program again
+    #[arg(long, value_enum, default_value_t = OnEdit::Restart)]
+    pub on_edit: OnEdit,
+    /// How long a block may run before it is stopped, ms
+    #[arg(long, value_name = "MS", default_value = "250", value_parser = clap::value_parser!(u64).range(1..=60_000))]
+    pub block_limit: u64,
+    /// How much memory Lua may use, MiB
+    #[arg(long, value_name = "MIB", default_value = "64", value_parser = clap::value_parser!(u64).range(4..=65_536))]
+    pub memory_limit: u64,
+    /// Let blocks use Lua's io, os and debug libraries
+    #[arg(long, action = ArgAction::SetTrue)]
+    pub allow_system: bool,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+pub enum OnEdit {
+    Restart,
+}
+
+#[derive(clap::Args)]
+pub struct GraphArgs {
+    pub file: PathBuf,
+    /// The path of the machine, such as follower/looking/lookalgo; the first one by default
+    pub machine: Option<String>,
+    /// Columns at most; labels are shortened to fit
+    #[arg(long, value_name = "N")]
+    pub width: Option<u16>,
+    /// Rows at most; states are drawn with one row each where that helps
+    #[arg(long, value_name = "N")]
+    pub height: Option<u16>,
+    /// Only ASCII characters
+    #[arg(long, action = ArgAction::SetTrue)]
+    pub ascii: bool,
+    #[arg(long, value_enum, default_value_t = GraphFormat::Text)]
+    pub format: GraphFormat,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum GraphFormat {
+    Text,
+    Dot,
+    Mermaid,
+}
+
+impl RunArgs {
+    pub fn setup(&self) -> Setup {
+        let limits = Limits { time: Duration::from_millis(self.block_limit), memory: (self.memory_limit << 20) as usize };
+        let access = if self.allow_system { Access::System } else { Access::Sandboxed };
+        let clock = if self.virtual_time { Clock::Virtual } else { Clock::Real };
+        Setup {
+            file: self.file.clone(),
+            options: Options { limits, access, seed: self.seed },
+            pacing: Pacing { rate: self.rate, clock, until: self.until.map(|time| Time(time.as_micros() as u64)) },
+            robots: self.bridge.clone(),
+        }
+    }
+}
+
+fn rate(text: &str) -> Result<Rate, String> {
+    let wrong = || format!("a rate is a number of steps a second from 0 to {}", Rate::MAX_HZ);
+    text.parse().ok().and_then(Rate::new).ok_or_else(wrong)
+}
+
+fn robot(text: &str) -> Result<Robot, String> {
+    match text.split_once('=') {
+        Some((name, kind)) if !name.is_empty() && !kind.is_empty() => Ok(Robot { name: name.to_string(), kind: kind.to_string() }),
+        _ => Err("write NAME=KIND, such as robot=sim".to_string()),
+    }
+}
+
+fn duration(text: &str) -> Result<Duration, String> {
+    let wrong = || "a time is a number with its unit, such as 500ms, 5s or 2m".to_string();
+    let split = text.find(|c: char| c.is_ascii_alphabetic()).ok_or_else(wrong)?;
+    let seconds = match &text[split..] {
+        "ms" => 1e-3,
+        "s" => 1.0,
+        "m" | "min" => 60.0,
+        "h" => 3600.0,
+        _ => return Err(wrong()),
+    };
+    let number: f64 = text[..split].parse().map_err(|_| wrong())?;
+    Duration::try_from_secs_f64(number * seconds).map_err(|_| wrong())
+}

@@ -1,0 +1,58 @@
+//! `lrp graph`: the drawing of a machine on standard output.
+
+use std::process::ExitCode;
+
+use super::args::{GraphArgs, GraphFormat};
+use crate::model::{MachineId, Program};
+use crate::session::compile::{Compiler, Rejected};
+use crate::session::loader;
+use crate::syntax::nearest::nearest;
+use crate::syntax::render::{Style, render};
+use crate::ui::graph::{Glyphs, Options, Rows, dot, draw, mermaid};
+use crate::ui::machine_graph;
+
+pub fn print(args: &GraphArgs) -> ExitCode {
+    match drawing(args) {
+        Ok(text) => {
+            println!("{}", text.trim_end());
+            ExitCode::SUCCESS
+        }
+        Err(why) => {
+            eprintln!("{}", why.trim_end());
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn drawing(args: &GraphArgs) -> Result<String, String> {
+    let source = loader::read(&args.file).map_err(|why| format!("lrp: {why}"))?;
+    let program = Compiler::new(Vec::new())
+        .compile(source)
+        .map_err(|Rejected { sources, diagnostics }| render(&diagnostics, &sources, Style::Plain))?;
+    let machine = chosen(&program, args.machine.as_deref())?;
+    Ok(match args.format {
+        GraphFormat::Text => text(&program, machine, args),
+        GraphFormat::Dot => dot(&machine_graph::nested(&program, machine)),
+        GraphFormat::Mermaid => mermaid(&machine_graph::nested(&program, machine)),
+    })
+}
+
+fn chosen(program: &Program, path: Option<&str>) -> Result<MachineId, String> {
+    let Some(path) = path else {
+        return program.tops.first().copied().ok_or_else(|| "lrp: this program has no machine".to_string());
+    };
+    program.machine(path).ok_or_else(|| {
+        let known: Vec<&str> = program.machines.iter().map(|machine| &*machine.path).collect();
+        let near = nearest(path, known.iter().copied());
+        let help = near.map_or_else(|| format!("there is: {}", known.join(", ")), |near| format!("did you mean `{near}`?"));
+        format!("lrp: there is no machine `{path}`; {help}")
+    })
+}
+
+fn text(program: &Program, machine: MachineId, args: &GraphArgs) -> String {
+    let graph = machine_graph::graph(program, machine);
+    let glyphs = if args.ascii { Glyphs::Ascii } else { Glyphs::Unicode };
+    let full = draw(&graph, &Options { glyphs, max_width: args.width, rows: Rows::Two });
+    let fits = args.height.is_none_or(|height| full.height <= height);
+    if fits { full.text() } else { draw(&graph, &Options { glyphs, max_width: args.width, rows: Rows::One }).text() }
+}

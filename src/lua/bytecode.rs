@@ -1,0 +1,250 @@
+//! Finds the free names of a compiled text in Lua's own bytecode, so scoping is exactly Lua's. Knows the format of Lua 5.4 and nothing of blocks.
+
+use std::rc::Rc;
+
+/// A free name, where it is used, and how.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(super) struct Use {
+    pub name: String,
+    pub line: u32,
+    pub kind: Kind,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Kind {
+    Read,
+    Write,
+}
+
+const LOADK: u32 = 3;
+const LOADKX: u32 = 4;
+const GETUPVAL: u32 = 9;
+const GETTABUP: u32 = 11;
+const GETTABLE: u32 = 12;
+const SETTABUP: u32 = 15;
+const SETTABLE: u32 = 16;
+
+/// Signature, version, format, check bytes, three sizes, an integer, a number, the count of upvalues.
+const HEADER: usize = 4 + 1 + 1 + 6 + 3 + 8 + 8 + 1;
+/// In place of a line's difference: the line is in the other list.
+const ABSOLUTE: i8 = -0x80;
+
+/// The uses of free names in a function as `lua_dump` writes it, unstripped; nothing if the bytes aren't such.
+pub(super) fn uses(dump: &[u8]) -> Option<Vec<Use>> {
+    let mut reader = Reader {
+        bytes: dump.get(HEADER..)?,
+    };
+    let mut uses = Vec::new();
+    reader.function(None, &mut uses)?;
+    uses.sort_by_key(|found| found.line);
+    Some(uses)
+}
+
+struct Reader<'a> {
+    bytes: &'a [u8],
+}
+
+/// One instruction, its fields as Lua names them.
+#[derive(Clone, Copy)]
+struct Instruction(u32);
+
+impl Instruction {
+    fn opcode(self) -> u32 {
+        self.0 & 0x7F
+    }
+    fn a(self) -> usize {
+        (self.0 >> 7 & 0xFF) as usize
+    }
+    fn b(self) -> usize {
+        (self.0 >> 16 & 0xFF) as usize
+    }
+    fn c(self) -> usize {
+        (self.0 >> 24) as usize
+    }
+    fn bx(self) -> usize {
+        (self.0 >> 15) as usize
+    }
+    fn ax(self) -> usize {
+        (self.0 >> 7) as usize
+    }
+}
+
+/// Which of a function's upvalues are the environment.
+type Environments = Rc<[bool]>;
+
+impl<'a> Reader<'a> {
+    fn take(&mut self, count: usize) -> Option<&'a [u8]> {
+        let (taken, rest) = self.bytes.split_at_checked(count)?;
+        self.bytes = rest;
+        Some(taken)
+    }
+
+    fn byte(&mut self) -> Option<u8> {
+        Some(self.take(1)?[0])
+    }
+
+    fn size(&mut self) -> Option<usize> {
+        let mut size = 0_usize;
+        loop {
+            let byte = self.byte()?;
+            size = size.checked_mul(128)? | usize::from(byte & 0x7F);
+            if byte & 0x80 != 0 {
+                return Some(size);
+            }
+        }
+    }
+
+    fn string(&mut self) -> Option<&'a [u8]> {
+        match self.size()? {
+            0 => Some(b""),
+            size => self.take(size - 1),
+        }
+    }
+
+    /// A function and those in it; `outer` is that of the function around it.
+    fn function(&mut self, outer: Option<&Environments>, uses: &mut Vec<Use>) -> Option<()> {
+        self.string()?;
+        let first_line = self.size()?;
+        self.size()?;
+        self.take(3)?;
+        let count = self.size()?;
+        let (words, _) = self.take(count.checked_mul(4)?)?.as_chunks::<4>();
+        let code: Vec<_> = words
+            .iter()
+            .map(|word| Instruction(u32::from_le_bytes(*word)))
+            .collect();
+        let constants = self.constants()?;
+        let environments = self.environments(outer)?;
+        for _ in 0..self.size()? {
+            self.function(Some(&environments), uses)?;
+        }
+        let lines = self.lines(first_line)?;
+        self.skip_names()?;
+        let function = Function {
+            code,
+            constants,
+            environments,
+        };
+        uses.extend(function.uses().map(|(at, name, kind)| Use {
+            name,
+            line: lines.get(at).copied().unwrap_or(0),
+            kind,
+        }));
+        Some(())
+    }
+
+    /// The strings among the constants.
+    fn constants(&mut self) -> Option<Vec<Option<&'a [u8]>>> {
+        let count = self.size()?;
+        let mut constants = Vec::new();
+        for _ in 0..count {
+            constants.push(match self.byte()? {
+                0 | 1 | 17 => None,
+                3 | 19 => self.take(8).map(|_| None)?,
+                4 | 20 => Some(self.string()?),
+                _ => return None,
+            });
+        }
+        Some(constants)
+    }
+
+    /// The text's only upvalue is its environment; an inner function's is, if it takes that of the function around it.
+    fn environments(&mut self, outer: Option<&Environments>) -> Option<Environments> {
+        let count = self.size()?;
+        let mut environments = Vec::new();
+        for _ in 0..count {
+            let (in_stack, index) = (self.byte()? != 0, self.byte()?);
+            self.byte()?;
+            environments.push(match outer {
+                None => true,
+                Some(outer) => !in_stack && outer.get(usize::from(index)).copied().unwrap_or(false),
+            });
+        }
+        Some(environments.into())
+    }
+
+    /// The line of each instruction.
+    fn lines(&mut self, first: usize) -> Option<Vec<u32>> {
+        let count = self.size()?;
+        let differences = self.take(count)?;
+        let mut absolute = Vec::new();
+        for _ in 0..self.size()? {
+            absolute.push((self.size()?, self.size()?));
+        }
+        let (mut line, mut absolute) = (first as i64, absolute.into_iter());
+        let mut lines = Vec::with_capacity(count);
+        for &difference in differences {
+            line = match difference as i8 {
+                ABSOLUTE => absolute.next()?.1 as i64,
+                difference => line + i64::from(difference),
+            };
+            lines.push(line as u32);
+        }
+        Some(lines)
+    }
+
+    fn skip_names(&mut self) -> Option<()> {
+        for _ in 0..self.size()? {
+            self.string()?;
+            self.size()?;
+            self.size()?;
+        }
+        for _ in 0..self.size()? {
+            self.string()?;
+        }
+        Some(())
+    }
+}
+
+struct Function<'a> {
+    code: Vec<Instruction>,
+    constants: Vec<Option<&'a [u8]>>,
+    environments: Environments,
+}
+
+impl Function<'_> {
+    fn uses(&self) -> impl Iterator<Item = (usize, String, Kind)> + '_ {
+        (0..self.code.len()).filter_map(|at| {
+            let (constant, kind) = self.use_at(at)?;
+            let name = self.constants.get(constant).copied().flatten()?;
+            Some((at, String::from_utf8_lossy(name).into_owned(), kind))
+        })
+    }
+
+    /// The constant that names what the instruction uses of the environment.
+    fn use_at(&self, at: usize) -> Option<(usize, Kind)> {
+        let instruction = self.code[at];
+        match instruction.opcode() {
+            GETTABUP if self.is_environment(instruction.b()) => Some((instruction.c(), Kind::Read)),
+            SETTABUP if self.is_environment(instruction.a()) => {
+                Some((instruction.b(), Kind::Write))
+            }
+            GETUPVAL if self.is_environment(instruction.b()) => self.long_use(at),
+            _ => None,
+        }
+    }
+
+    fn is_environment(&self, upvalue: usize) -> bool {
+        self.environments.get(upvalue).copied().unwrap_or(false)
+    }
+
+    /// Where a name is long, or one of more than 255 constants, environment and name are put in registers first.
+    fn long_use(&self, at: usize) -> Option<(usize, Kind)> {
+        let table = self.code[at].a();
+        let load = *self.code.get(at + 1)?;
+        let (constant, next) = match load.opcode() {
+            LOADK => (load.bx(), at + 2),
+            LOADKX => (self.code.get(at + 2)?.ax(), at + 3),
+            _ => return None,
+        };
+        let key = load.a();
+        let used = self.code[next..]
+            .iter()
+            .find_map(|user| match user.opcode() {
+                GETTABLE if user.b() == table && user.c() == key => Some(Kind::Read),
+                SETTABLE if user.a() == table && user.b() == key => Some(Kind::Write),
+                _ => None,
+            });
+        Some((constant, used?))
+    }
+}

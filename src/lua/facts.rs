@@ -1,0 +1,204 @@
+//! What can be said of a block without running it. Knows nothing of variables.
+
+use serde_json::Value;
+
+use super::bytecode::{Kind, Use};
+use super::value::Bounds;
+use super::{Access, Failure, Limits, Lua, SyntaxError, source};
+
+/// A free name of a block: neither a local nor a field. Built-in names are among them.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct NameUse {
+    pub name: String,
+    /// 1-based in the block's text.
+    pub line: u32,
+}
+
+/// The free names of a block, by line: those it reads and those it assigns, functions in it included.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Facts {
+    pub reads: Vec<NameUse>,
+    pub writes: Vec<NameUse>,
+}
+
+/// Looks at blocks with an interpreter of its own.
+pub struct Checker {
+    lua: Lua,
+}
+
+/// Bounds of a configuration.
+const CONFIG: Bounds = Bounds {
+    depth: 16,
+    bytes: 1 << 20,
+};
+
+impl Default for Checker {
+    fn default() -> Self {
+        Self::new()
+    }
+}
+
+impl Checker {
+    pub fn new() -> Self {
+        Self {
+            lua: Lua::new(Limits::default(), Access::Sandboxed, 0),
+        }
+    }
+
+    /// The free names of a block.
+    ///
+    /// # Errors
+    /// The text is neither an expression nor statements.
+    pub fn check(&mut self, code: &str) -> Result<Facts, SyntaxError> {
+        // SAFETY: nothing runs, and there is no memory limit.
+        let (_, uses) = self
+            .lua
+            .unlimited(|lua| unsafe { source::analyse(lua.stack.state(), code) })?;
+        let mut facts = Facts::default();
+        for Use { name, line, kind } in uses {
+            match kind {
+                Kind::Read => facts.reads.push(NameUse { name, line }),
+                Kind::Write => facts.writes.push(NameUse { name, line }),
+            }
+        }
+        Ok(facts)
+    }
+
+    /// The value of `{code}`: a configuration, which is data, so no names are at hand. Lines are those of `code`.
+    ///
+    /// # Errors
+    /// The text isn't the inside of a table, uses a name, fails, or takes more than a block may.
+    pub fn config(&mut self, code: &str) -> Result<Value, SyntaxError> {
+        let code = format!("{{{code}\n}}");
+        let facts = self.check(&code)?;
+        if let Some(NameUse { name, line }) = facts.reads.into_iter().chain(facts.writes).next() {
+            let message = format!(
+                "'{name}' is nothing here: a configuration is data; a text needs quotation marks"
+            );
+            return Err(SyntaxError {
+                message,
+                line,
+                token: Some(name),
+            });
+        }
+        let block = self.lua.compile(&code, &[])?;
+        let value = self.lua.eval_within(block, CONFIG);
+        self.lua.free_block(block);
+        value.map_err(
+            |Failure {
+                 message,
+                 line,
+                 token,
+                 ..
+             }| SyntaxError {
+                message,
+                line,
+                token,
+            },
+        )
+    }
+}
+
+/// The names every block has at hand, sorted; those of `Access::System` besides are `io` and `debug`.
+pub fn known_names() -> impl Iterator<Item = &'static str> {
+    KNOWN.iter().map(|(name, _)| *name)
+}
+
+/// The fields of a library every block has at hand, sorted; none for other names.
+pub fn known_fields(library: &str) -> &'static [&'static str] {
+    KNOWN
+        .iter()
+        .find(|(name, _)| *name == library)
+        .map_or(&[], |(_, fields)| fields)
+}
+
+const KNOWN: &[(&str, &[&str])] = &[
+    ("_G", &[]),
+    ("_VERSION", &[]),
+    ("assert", &[]),
+    (
+        "coroutine",
+        &[
+            "close",
+            "create",
+            "isyieldable",
+            "resume",
+            "running",
+            "status",
+            "wrap",
+            "yield",
+        ],
+    ),
+    ("elapsed", &[]),
+    ("error", &[]),
+    ("getmetatable", &[]),
+    ("ipairs", &[]),
+    ("load", &[]),
+    ("log", &["debug", "error", "info", "warn"]),
+    (
+        "math",
+        &[
+            "abs",
+            "acos",
+            "asin",
+            "atan",
+            "ceil",
+            "cos",
+            "deg",
+            "exp",
+            "floor",
+            "fmod",
+            "huge",
+            "log",
+            "max",
+            "maxinteger",
+            "min",
+            "mininteger",
+            "modf",
+            "pi",
+            "rad",
+            "random",
+            "randomseed",
+            "sin",
+            "sqrt",
+            "tan",
+            "tointeger",
+            "type",
+            "ult",
+        ],
+    ),
+    ("next", &[]),
+    ("now", &[]),
+    ("os", &["clock", "date", "time"]),
+    ("pairs", &[]),
+    ("pcall", &[]),
+    ("print", &[]),
+    ("rawequal", &[]),
+    ("rawget", &[]),
+    ("rawlen", &[]),
+    ("rawset", &[]),
+    ("require", &[]),
+    ("select", &[]),
+    ("setmetatable", &[]),
+    (
+        "string",
+        &[
+            "byte", "char", "find", "format", "gmatch", "gsub", "len", "lower", "match", "pack",
+            "packsize", "rep", "reverse", "sub", "unpack", "upper",
+        ],
+    ),
+    (
+        "table",
+        &[
+            "concat", "insert", "move", "pack", "remove", "sort", "unpack",
+        ],
+    ),
+    ("tonumber", &[]),
+    ("tostring", &[]),
+    ("type", &[]),
+    (
+        "utf8",
+        &["char", "charpattern", "codepoint", "codes", "len", "offset"],
+    ),
+    ("xpcall", &[]),
+];

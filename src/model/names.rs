@@ -1,0 +1,69 @@
+//! Looking names up from the innermost scope outwards.
+
+use std::sync::Arc;
+
+use super::ids::*;
+use super::program::Program;
+
+pub struct Names<'p> {
+    program: &'p Program,
+}
+
+impl<'p> Names<'p> {
+    pub fn of(program: &'p Program) -> Self {
+        Names { program }
+    }
+
+    /// A machine and those that enclose it, innermost first.
+    fn outwards(&self, machine: Option<MachineId>) -> impl Iterator<Item = MachineId> + use<'p> {
+        let program = self.program;
+        std::iter::successors(machine, move |&machine| program.enclosing(machine))
+    }
+
+    pub fn var(&self, machine: Option<MachineId>, name: &str) -> Option<VarId> {
+        let named = |&var: &VarId| &*self.program[var].name == name;
+        self.outwards(machine)
+            .find_map(|machine| self.program[machine].vars.iter().copied().find(named))
+            .or_else(|| self.program.globals.iter().copied().find(named))
+    }
+
+    /// Every variable in scope, inner ones first.
+    pub fn vars_in_scope(&self, machine: Option<MachineId>) -> Vec<VarId> {
+        let mut vars: Vec<VarId> =
+            self.outwards(machine).flat_map(|machine| self.program[machine].vars.iter().copied()).collect();
+        vars.extend(&self.program.globals);
+        vars
+    }
+
+    pub fn vars(&self, machine: Option<MachineId>) -> Vec<Arc<str>> {
+        self.vars_in_scope(machine).into_iter().map(|var| self.program[var].name.clone()).collect()
+    }
+
+    pub fn event(&self, machine: MachineId, name: &str) -> Option<EventId> {
+        self.outwards(Some(machine)).find_map(|machine| {
+            self.program[machine].events.iter().copied().find(|&event| &*self.program[event].name == name)
+        })
+    }
+
+    pub fn events(&self, machine: MachineId) -> Vec<Arc<str>> {
+        let events = self.outwards(Some(machine)).flat_map(|machine| self.program[machine].events.iter());
+        events.map(|&event| self.program[event].name.clone()).collect()
+    }
+
+    /// The machines a spawn may name: those written in the state and in the states around it, then those at top level.
+    fn machines_in_scope(&self, state: Option<StateId>) -> impl Iterator<Item = MachineId> + use<'p> {
+        let program = self.program;
+        let around = std::iter::successors(state, move |&state| program[program[state].machine].parent);
+        around
+            .flat_map(move |state| program[state].machines.iter().copied())
+            .chain(program.tops.iter().copied())
+    }
+
+    pub fn machine(&self, state: Option<StateId>, name: &str) -> Option<MachineId> {
+        self.machines_in_scope(state).find(|&machine| &*self.program[machine].name == name)
+    }
+
+    pub fn machines(&self, state: Option<StateId>) -> Vec<Arc<str>> {
+        self.machines_in_scope(state).map(|machine| self.program[machine].name.clone()).collect()
+    }
+}

@@ -1,0 +1,176 @@
+//! Running a program's blocks: each on its own, so that a mistake in one costs that one alone.
+
+use std::sync::Arc;
+
+use super::engine::Engine;
+use super::faults::Happening;
+use super::record::{Log, What};
+use crate::lua::{self, Failure, FailureKind, Num, Ran};
+use crate::model::blocks::place;
+use crate::model::*;
+use crate::syntax::{Code, Span};
+
+impl Engine {
+    pub(super) fn run_all(&mut self, blocks: &[BlockId]) {
+        for &block in blocks {
+            self.run(block);
+        }
+    }
+
+    pub(super) fn run(&mut self, block: BlockId) {
+        let Some(function) = self.prepare(block) else { return };
+        if matches!(self.store.lua.run(function), Ran::Failed) {
+            self.failed(block);
+        }
+        self.ran(block);
+    }
+
+    pub(super) fn test(&mut self, block: BlockId) -> bool {
+        let Some(function) = self.prepare(block) else { return false };
+        let result = self.store.lua.test(function);
+        self.ran(block);
+        match result {
+            lua::Test::True => true,
+            lua::Test::False => false,
+            lua::Test::Failed => {
+                self.failed(block);
+                false
+            }
+            lua::Test::NotBoolean(kind) => {
+                self.not_boolean(block, kind);
+                false
+            }
+        }
+    }
+
+    /// The value of a timeout's block, in milliseconds.
+    pub(super) fn milliseconds(&mut self, block: BlockId) -> Option<f64> {
+        let function = self.prepare(block)?;
+        let result = self.store.lua.number(function);
+        self.ran(block);
+        match result {
+            Num::Number(ms) => Some(ms),
+            Num::Failed => {
+                self.failed(block);
+                None
+            }
+            Num::NotNumber(kind) => {
+                let span = self.program[block].span;
+                let message = format!("a timeout is a number of milliseconds, but this block gives {kind}");
+                self.block_fault(block, Code::NotMilliseconds, span, message, None);
+                None
+            }
+        }
+    }
+
+    /// Gives a variable its initial value: nil where its block fails.
+    pub(super) fn initialise(&mut self, var: VarId) {
+        let block = self.program[var].init;
+        let cell = self.store.cell(var);
+        self.changes.initialised(var);
+        self.store.lua.clear(cell);
+        let Some(function) = self.prepare(block) else { return };
+        if matches!(self.store.lua.init(function, cell), Ran::Failed) {
+            self.failed(block);
+        }
+        self.ran(block);
+    }
+
+    fn prepare(&mut self, block: BlockId) -> Option<lua::Block> {
+        let function = self.store.ready(block)?;
+        let machine = self.store.block(block).machine;
+        let entered = machine.and_then(|machine| self.running[machine.index()].as_ref()).map(|running| running.entered);
+        self.store.lua.since(entered.unwrap_or_default().ms());
+        Some(function)
+    }
+
+    fn ran(&mut self, block: BlockId) {
+        if self.store.block(block).uses_variables {
+            self.changes.touched(block);
+        }
+        if self.store.lua.has_logs() {
+            self.take_logs();
+        }
+    }
+
+    pub(super) fn take_logs(&mut self) {
+        for line in self.store.lua.take_logs() {
+            let place = line.block.and_then(|function| self.store.find(function));
+            let (state, file, at) = match place {
+                Some(block) => {
+                    let span = self.program[block].span;
+                    let source = self.program.source(span);
+                    let first = source.line(span.start as usize);
+                    (self.program.owner_path(block), source.name.clone(), first + line.line.max(1) as usize - 1)
+                }
+                None => (Arc::default(), Arc::default(), 0),
+            };
+            self.rare(What::Log(Log { level: line.level.into(), message: line.message, state, file, line: at }));
+        }
+    }
+
+    fn failed(&mut self, block: BlockId) {
+        let failure = self.store.lua.take_failure();
+        if let Some(missing) = self.robots.no_message(&failure.message) {
+            return self.waiting_for_message(block, &failure, missing);
+        }
+        let (code, help) = match failure.kind {
+            FailureKind::Runtime => (Code::Runtime, None),
+            FailureKind::OverTime => (Code::OverTime, Some("it is not run again until it is edited or its state is entered anew")),
+            FailureKind::OverMemory => (Code::OverMemory, Some("it is not run again until it is edited or its state is entered anew")),
+        };
+        if code != Code::Runtime {
+            self.store.stop(block);
+        }
+        let span = self.failure_span(block, &failure);
+        self.block_fault(block, code, span, failure.message, help.map(str::to_string));
+    }
+
+    fn failure_span(&self, block: BlockId, failure: &Failure) -> Span {
+        let span = self.program[block].span;
+        place(self.program.source(span), span, failure.line, failure.token.as_deref())
+    }
+
+    /// Not a mistake: the robot has not spoken yet. Said once for each input.
+    fn waiting_for_message(&mut self, block: BlockId, failure: &Failure, missing: super::robot::NoMessage) {
+        // Before the first step nothing can have come.
+        if self.step == 0 || !self.robots.is_news(&missing) {
+            return;
+        }
+        let span = self.failure_span(block, failure);
+        let source = self.program.source(span);
+        let line = source.line(span.start as usize);
+        let message = format!("`{}.{}` has had no message yet; what needs it is skipped until one comes", missing.bridge, missing.input);
+        let log = Log { level: super::record::Level::Info, message, state: self.program.owner_path(block), file: source.name.clone(), line };
+        self.rare(What::Log(log));
+    }
+
+    fn not_boolean(&mut self, block: BlockId, kind: &str) {
+        let span = self.program[block].span;
+        let (what, help) = match self.program[block].owner {
+            Owner::Event(event) => (format!("event `{}`", self.program[event].name), "compare with something: `x > 0`, `x ~= nil`"),
+            _ => ("this trigger".to_string(), "compare with something: `x > 0`, `x ~= nil`"),
+        };
+        let message = format!("{what} gives {kind}, not true or false; it doesn't occur");
+        self.block_fault(block, Code::NotBoolean, span, message, Some(help.to_string()));
+    }
+
+    pub(super) fn not_milliseconds(&mut self, transition: TransitionId, var: VarId) {
+        let program = Arc::clone(&self.program);
+        let message = format!("timeout `{}` is not a number of milliseconds; the transition is not taken", program[var].name);
+        let state = program[program[transition].machine].path.clone();
+        self.fault(Code::NotMilliseconds, program[transition].span, message, None, state);
+    }
+
+    fn block_fault(&mut self, block: BlockId, code: Code, span: Span, message: String, help: Option<String>) {
+        let state = self.program.owner_path(block);
+        self.fault(code, span, message, help, state);
+    }
+
+    pub(super) fn fault(&mut self, code: Code, span: Span, message: String, help: Option<String>, state: Arc<str>) {
+        let happening = Happening { code, span, message, help, state };
+        if let Some(fault) = self.faults.happened(self.now, self.program.source(span), happening) {
+            self.rare(What::Error(fault));
+        }
+    }
+}

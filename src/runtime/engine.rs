@@ -1,0 +1,164 @@
+//! The engine: one program as it runs. A step goes in with what the robot said; records come out.
+
+use std::rc::Rc;
+use std::sync::Arc;
+
+use serde_json::Value;
+
+use super::faults::Faults;
+use super::note::Note;
+use super::plan::Plan;
+use super::record::{Change, Load, Record, What};
+use super::robot::Robots;
+use super::store::Store;
+use super::time::Time;
+use crate::lua::{Access, Limits, Lua};
+use crate::model::*;
+
+#[derive(Clone, Debug)]
+pub struct Options {
+    pub limits: Limits,
+    pub access: Access,
+    /// For `math.random`.
+    pub seed: u64,
+}
+
+impl Default for Options {
+    fn default() -> Self {
+        Options { limits: Limits::default(), access: Access::Sandboxed, seed: 1 }
+    }
+}
+
+/// What a bridge received since the last step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Input {
+    pub bridge: Arc<str>,
+    pub name: Arc<str>,
+    pub value: Value,
+}
+
+pub struct Engine {
+    pub(super) program: Arc<Program>,
+    pub(super) plan: Rc<Plan>,
+    pub(super) store: Store,
+    pub(super) robots: Robots,
+    /// By machine.
+    pub(super) running: Vec<Option<Running>>,
+    /// Running machines that no state spawned, in the order of the spawn statements.
+    pub(super) tops: Vec<MachineId>,
+    /// How often each state was entered since the program started.
+    pub(super) visits: Vec<u64>,
+    pub(super) step: u64,
+    pub(super) now: Time,
+    pub(super) paused: bool,
+    pub(super) notes: Vec<Note>,
+    pub(super) faults: Faults,
+    pub(super) changes: super::changes::Changes,
+}
+
+/// A machine that runs: where it is and what it has spawned there.
+pub(super) struct Running {
+    pub state: StateId,
+    pub entered: Time,
+    pub nested: Vec<MachineId>,
+}
+
+impl Engine {
+    pub fn new(options: Options) -> Engine {
+        Engine {
+            program: Arc::default(),
+            plan: Rc::new(Plan::of(&Program::default())),
+            store: Store::new(Lua::new(options.limits, options.access, options.seed)),
+            robots: Robots::default(),
+            running: Vec::new(),
+            tops: Vec::new(),
+            visits: Vec::new(),
+            step: 0,
+            now: Time::ZERO,
+            paused: false,
+            notes: Vec::new(),
+            faults: Faults::default(),
+            changes: super::changes::Changes::default(),
+        }
+    }
+
+    /// Makes a robot known to all blocks under its name, or changes what it offers.
+    pub fn describe(&mut self, bridge: &str, description: &Description, stale: Option<Time>) {
+        self.robots.describe(&mut self.store.lua, bridge, description, stale);
+    }
+
+    /// Where the text of a `require`d Lua module comes from.
+    pub fn library(&mut self, find: impl Fn(&str) -> Result<String, String> + 'static) {
+        self.store.lua.library(Box::new(find));
+    }
+
+    /// One step of every machine, at a program time not before that of the last one.
+    pub fn step(&mut self, now: Time, inputs: &[Input]) {
+        self.step += 1;
+        self.now = now;
+        self.store.lua.now(now.ms());
+        for input in inputs {
+            self.receive(input);
+        }
+        let plan = Rc::clone(&self.plan);
+        for index in 0..self.tops.len() {
+            self.step_machine(&plan, self.tops[index]);
+        }
+        self.finish();
+    }
+
+    fn receive(&mut self, input: &Input) {
+        self.robots.receive(&self.store.lua, input, self.now);
+        let Input { bridge, name, value } = input.clone();
+        self.rare(What::Input { bridge, name, value });
+    }
+
+    /// What a step or a command leaves to be said at its end: changed variables, outputs, faults that went on.
+    pub(super) fn finish(&mut self) {
+        self.report_changes();
+        for (bridge, name, value) in self.robots.take_outputs(&self.store.lua) {
+            self.rare(What::Output { bridge, name, value });
+        }
+        for fault in self.faults.due(self.now) {
+            self.rare(What::Error(fault));
+        }
+    }
+
+    pub(super) fn note(&mut self, note: Note) {
+        self.notes.push(note);
+    }
+
+    pub(super) fn rare(&mut self, what: What) {
+        self.notes.push(Note::Rare(Box::new(what)));
+    }
+
+    /// Puts something that only the session knows among the records.
+    pub fn say(&mut self, what: What) {
+        self.rare(what);
+    }
+
+    /// Hands over what happened since the last call, in order.
+    pub fn drain(&mut self, mut sink: impl FnMut(Record)) {
+        let (step, t) = (self.step, self.now);
+        for note in self.notes.drain(..) {
+            sink(Record { step, t, what: note.spell_out(&self.program) });
+        }
+    }
+
+    /// Forgets what happened since the last `drain`: for those who only want the machines to run.
+    pub fn discard_records(&mut self) {
+        self.notes.clear();
+    }
+
+    pub(super) fn load_record(&self, changes: Vec<Change>, reason: Option<String>) -> Load {
+        let program = &self.program;
+        Load {
+            changes,
+            restarted: reason.is_some(),
+            reason,
+            findings: super::findings::findings(program, |finding| !finding.is_error()),
+            files: super::findings::files(program),
+            program: Some(Arc::clone(program)),
+        }
+    }
+}

@@ -1,0 +1,229 @@
+//! One machine's part of a step: the guards of its active state, leaving and entering states, spawning and discarding.
+
+use super::engine::{Engine, Running};
+use super::note::Note;
+use super::plan::{EntryItem, Guard, Plan, Test};
+use super::time::Time;
+use crate::model::*;
+use crate::syntax::Code;
+
+/// A transition whose guard holds; `via` is the nested state an exit transition is written at.
+pub(super) struct Fired {
+    transition: TransitionId,
+    target: StateId,
+    via: Option<StateId>,
+}
+
+impl Engine {
+    pub(super) fn step_machine(&mut self, plan: &Plan, machine: MachineId) {
+        let Some(state) = self.active_state(machine) else { return };
+        if let Some(fired) = self.firing(plan, machine, state) {
+            self.take(plan, machine, state, fired);
+            self.settle(plan, machine);
+            return;
+        }
+        self.run_all(plan.running(state));
+        for index in 0..self.nested_count(machine) {
+            self.step_machine(plan, self.nested(machine, index));
+        }
+    }
+
+    pub(super) fn active_state(&self, machine: MachineId) -> Option<StateId> {
+        self.running[machine.index()].as_ref().map(|running| running.state)
+    }
+
+    fn nested_count(&self, machine: MachineId) -> usize {
+        self.running[machine.index()].as_ref().map_or(0, |running| running.nested.len())
+    }
+
+    fn nested(&self, machine: MachineId, index: usize) -> MachineId {
+        self.running[machine.index()].as_ref().map_or(machine, |running| running.nested[index])
+    }
+
+    /// The first transition that may be taken now: the machine's own, then exits of machines written in the state.
+    fn firing(&mut self, plan: &Plan, machine: MachineId, state: StateId) -> Option<Fired> {
+        for guard in plan.outgoing(state) {
+            if self.holds(guard, machine) {
+                return self.fired(guard.transition, None);
+            }
+        }
+        for guard in plan.exits(state) {
+            let nested = self.program[guard.transition].machine;
+            let Some(inner) = self.active_state(nested) else { continue };
+            if self.program[guard.transition].leaves(inner) && self.holds(guard, nested) {
+                return self.fired(guard.transition, Some(inner));
+            }
+        }
+        None
+    }
+
+    fn fired(&self, transition: TransitionId, via: Option<StateId>) -> Option<Fired> {
+        let target = self.program[transition].target?;
+        Some(Fired { transition, target, via })
+    }
+
+    fn holds(&mut self, guard: &Guard, machine: MachineId) -> bool {
+        match guard.test {
+            Test::Always => true,
+            Test::Block(block) => self.test(block),
+            Test::After(timeout) => self.since_entry(machine) >= timeout,
+            Test::AfterVar(var, transition) => {
+                let ms = self.store.lua.number_in(self.store.cell(var));
+                if ms.is_none() {
+                    self.not_milliseconds(transition, var);
+                }
+                ms.is_some_and(|ms| self.is_due(machine, ms))
+            }
+            Test::AfterBlock(block) => self.milliseconds(block).is_some_and(|ms| self.is_due(machine, ms)),
+        }
+    }
+
+    /// Compared in the unit of the text, so that nothing is lost to rounding; nan is never due.
+    fn is_due(&self, machine: MachineId, ms: f64) -> bool {
+        self.since_entry(machine).ms() >= ms
+    }
+
+    fn since_entry(&self, machine: MachineId) -> Time {
+        self.running[machine.index()].as_ref().map_or(Time::ZERO, |running| self.now.since(running.entered))
+    }
+
+    fn take(&mut self, plan: &Plan, machine: MachineId, from: StateId, fired: Fired) {
+        self.note(Note::Transition { transition: fired.transition, from, via: fired.via });
+        self.leave(plan, machine);
+        self.enter(plan, machine, fired.target);
+    }
+
+    /// Runs the onexit actions from the innermost state outwards, then discards what was nested.
+    pub(super) fn leave(&mut self, plan: &Plan, machine: MachineId) {
+        self.exit(plan, machine);
+        self.discard_nested(machine);
+    }
+
+    fn exit(&mut self, plan: &Plan, machine: MachineId) {
+        for index in 0..self.nested_count(machine) {
+            self.exit(plan, self.nested(machine, index));
+        }
+        if let Some(state) = self.active_state(machine) {
+            self.note(Note::Exit(state));
+            self.run_all(plan.onexit(state));
+        }
+    }
+
+    pub(super) fn discard_nested(&mut self, machine: MachineId) {
+        if self.nested_count(machine) == 0 {
+            return;
+        }
+        let nested = self.running[machine.index()].as_mut().map(|running| std::mem::take(&mut running.nested));
+        for machine in nested.unwrap_or_default() {
+            self.discard(machine);
+        }
+    }
+
+    pub(super) fn discard(&mut self, machine: MachineId) {
+        self.discard_nested(machine);
+        self.running[machine.index()] = None;
+        for index in 0..self.program[machine].vars.len() {
+            let var = self.program[machine].vars[index];
+            self.store.lua.clear(self.store.cell(var));
+        }
+        self.note(Note::Discard(machine));
+    }
+
+    pub(super) fn enter(&mut self, plan: &Plan, machine: MachineId, state: StateId) {
+        self.arrive(machine, state);
+        for &item in plan.onentry(state) {
+            match item {
+                EntryItem::Action(block) => self.run(block),
+                EntryItem::Spawn(Some((machine, start))) => self.spawn(plan, machine, start, Some(state)),
+                EntryItem::Spawn(None) => {}
+            }
+        }
+    }
+
+    /// Makes a state the active one, its timers started anew, without any action.
+    pub(super) fn arrive(&mut self, machine: MachineId, state: StateId) {
+        if let Some(running) = &mut self.running[machine.index()] {
+            running.state = state;
+            running.entered = self.now;
+        }
+        self.visits[state.index()] += 1;
+        self.note(Note::Enter(state));
+        if self.store.any_stopped() {
+            self.allow_blocks_of(state);
+        }
+    }
+
+    /// A block that ran too long gets another chance when its state is entered anew.
+    fn allow_blocks_of(&mut self, state: StateId) {
+        let program = std::sync::Arc::clone(&self.program);
+        let state = &program[state];
+        let actions = state.onentry.iter().filter_map(|entry| match entry {
+            Entry::Action(block) => Some(*block),
+            Entry::Spawn(_) => None,
+        });
+        let guards = state.outgoing.iter().chain(&state.exits).filter_map(|&id| match program[id].trigger {
+            Trigger::Event(event) => Some(program[event].block),
+            Trigger::Block(block) | Trigger::AfterBlock(block) => Some(block),
+            _ => None,
+        });
+        for block in actions.chain(state.running.iter().copied()).chain(state.onexit.iter().copied()).chain(guards) {
+            self.store.allow_again(block);
+        }
+    }
+
+    /// Starts a machine in a state; `by` is the state whose onentry does it, none at top level.
+    pub(super) fn spawn(&mut self, plan: &Plan, machine: MachineId, state: StateId, by: Option<StateId>) {
+        if self.running[machine.index()].is_some() {
+            return self.already_running(machine, by);
+        }
+        self.start(machine, state, by);
+        self.enter(plan, machine, state);
+    }
+
+    /// Makes a machine run, its variables initialised, before any state is entered.
+    pub(super) fn start(&mut self, machine: MachineId, state: StateId, by: Option<StateId>) {
+        self.running[machine.index()] = Some(Running { state, entered: self.now, nested: Vec::new() });
+        let parent = by.and_then(|state| self.running[self.program[state].machine.index()].as_mut());
+        match parent {
+            Some(parent) => parent.nested.push(machine),
+            None => self.tops.push(machine),
+        }
+        self.note(Note::Spawn { machine, by });
+        for index in 0..self.program[machine].vars.len() {
+            self.initialise(self.program[machine].vars[index]);
+        }
+    }
+
+    /// Right after an entry: what may fire is taken in the next step and silences all that is inside; otherwise the
+    /// state begins to run.
+    pub(super) fn settle(&mut self, plan: &Plan, machine: MachineId) {
+        let Some(state) = self.active_state(machine) else { return };
+        if plan.running(state).is_empty() && self.nested_count(machine) == 0 {
+            return;
+        }
+        if self.firing(plan, machine, state).is_some() {
+            return;
+        }
+        self.run_all(plan.running(state));
+        for index in 0..self.nested_count(machine) {
+            self.settle(plan, self.nested(machine, index));
+        }
+    }
+
+    fn already_running(&mut self, machine: MachineId, by: Option<StateId>) {
+        let program = std::sync::Arc::clone(&self.program);
+        let spawns_it = |spawn: &&Spawn| spawn.target.is_some_and(|(target, _)| target == machine);
+        let spawn = match by {
+            Some(state) => program[state].onentry.iter().find_map(|entry| match entry {
+                Entry::Spawn(spawn) => Some(spawn).filter(spawns_it),
+                Entry::Action(_) => None,
+            }),
+            None => program.spawns.iter().find(spawns_it),
+        };
+        let span = spawn.map_or(program[machine].span, |spawn| spawn.span);
+        let message = format!("machine `{}` is running already; it goes on undisturbed", program[machine].path);
+        let help = "a machine runs at most once: write a second machine, or leave the state that spawned it first";
+        let state = by.map(|state| program[state].path.clone()).unwrap_or_default();
+        self.fault(Code::AlreadyRunning, span, message, Some(help.to_string()), state);
+    }
+}

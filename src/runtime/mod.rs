@@ -1,0 +1,26 @@
+//! The machines of a program as they run: commands and inputs go in, records come out.
+//! Never looks at the clock, the disk, the terminal or a socket.
+
+mod blocks;
+mod changes;
+pub mod command;
+pub mod engine;
+mod faults;
+pub mod findings;
+mod force;
+mod machine;
+mod note;
+mod obey;
+mod patch;
+mod picture;
+mod plan;
+pub mod record;
+mod robot;
+mod store;
+pub mod time;
+
+pub use command::Command;
+pub use engine::{Engine, Input, Options};
+pub use obey::Refused;
+pub use record::{Record, What};
+pub use time::Time;

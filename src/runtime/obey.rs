@@ -1,0 +1,138 @@
+//! Commands to the engine, applied between steps; each is recorded.
+
+use std::rc::Rc;
+use std::sync::Arc;
+
+use super::command::Command;
+use super::engine::Engine;
+use super::record::{Forced, Level, Log, What};
+use crate::model::names::Names;
+use crate::model::{StateId, VarId};
+use crate::lua::{Cell, Ran};
+use crate::syntax::nearest::nearest;
+
+/// Why a command had no effect, as a sentence.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Refused(pub String);
+
+impl std::fmt::Display for Refused {
+    fn fmt(&self, f: &mut std::fmt::Formatter) -> std::fmt::Result {
+        f.write_str(&self.0)
+    }
+}
+
+impl Engine {
+    pub fn command(&mut self, command: Command) -> Result<(), Refused> {
+        if !matches!(command, Command::Load(_) | Command::Reject { .. }) {
+            self.rare(What::Command { command: command.clone() });
+        }
+        let result = self.obey(command);
+        if let Err(Refused(message)) = &result {
+            let log = Log { level: Level::Error, message: message.clone(), state: Arc::default(), file: Arc::default(), line: 0 };
+            self.rare(What::Log(log));
+        }
+        self.finish();
+        result
+    }
+
+    fn obey(&mut self, command: Command) -> Result<(), Refused> {
+        match command {
+            Command::Load(program) => self.load(Arc::unwrap_or_clone(program)),
+            Command::Reject { findings } => self.rare(What::Reject { findings }),
+            Command::Pause => self.pause("asked for"),
+            Command::Runstop => self.pause("runstop"),
+            Command::Resume => self.resume(),
+            Command::Restart => self.restart("asked for"),
+            Command::TransitionTo { state } => self.force(self.state_called(&state)?, Forced::Transition),
+            Command::JumpTo { state } => self.force(self.state_called(&state)?, Forced::Jump),
+            Command::Set { var, value } => self.set(&var, &value)?,
+            Command::Step | Command::Rate { .. } | Command::PutAtStart { .. } => {}
+        }
+        Ok(())
+    }
+
+    fn pause(&mut self, reason: &str) {
+        if self.paused {
+            return;
+        }
+        self.paused = true;
+        self.rare(What::Pause { reason: reason.to_string() });
+        if let Some(block) = self.program.on_pause {
+            self.run(block);
+        }
+    }
+
+    fn resume(&mut self) {
+        if !self.paused {
+            return;
+        }
+        self.paused = false;
+        self.rare(What::Resume);
+        if let Some(block) = self.program.on_resume {
+            self.run(block);
+        }
+    }
+
+    /// From scratch, without onexit: the robot is stopped, variables are initialised, spawns done anew.
+    pub(super) fn restart(&mut self, reason: &str) {
+        self.rare(What::Restart { reason: reason.to_string() });
+        self.rare(What::Stop { reason: "restart".to_string() });
+        self.tops.clear();
+        for index in 0..self.program.vars.len() {
+            let cell = self.store.cell(VarId(index as u32));
+            self.store.lua.clear(cell);
+        }
+        self.begin();
+    }
+
+    /// Initialises the globals and spawns what is spawned at top level.
+    pub(super) fn begin(&mut self) {
+        let program = Arc::clone(&self.program);
+        let plan = Rc::clone(&self.plan);
+        self.running = program.machines.iter().map(|_| None).collect();
+        self.visits = vec![0; program.states.len()];
+        for &var in &program.globals {
+            self.initialise(var);
+        }
+        for spawn in &program.spawns {
+            if let Some((machine, state)) = spawn.target {
+                self.spawn(&plan, machine, state, None);
+            }
+        }
+        for index in 0..self.tops.len() {
+            self.settle(&plan, self.tops[index]);
+        }
+    }
+
+    fn state_called(&self, path: &str) -> Result<StateId, Refused> {
+        let known = self.program.states.iter().map(|state| &*state.path);
+        self.program.state(path).ok_or_else(|| refuse("state", path, known))
+    }
+
+    fn set(&mut self, path: &str, value: &str) -> Result<(), Refused> {
+        let program = Arc::clone(&self.program);
+        let known = program.vars.iter().map(|var| &*var.path);
+        let var = program.var(path).ok_or_else(|| refuse("variable", path, known))?;
+        let machine = program[var].machine;
+        if let Some(machine) = machine.filter(|_| !self.is_alive(var)) {
+            return Err(Refused(format!("`{path}` has no value now: machine `{}` is not running", program[machine].path)));
+        }
+        let in_scope = Names::of(&program).vars_in_scope(machine);
+        let scope: Vec<(&str, Cell)> = in_scope.iter().map(|&var| (&*program[var].name, self.store.cell(var))).collect();
+        let block = self.store.lua.compile(value, &scope).map_err(|error| Refused(format!("`{value}`: {}", error.message)))?;
+        let done = match self.store.lua.init(block, self.store.cell(var)) {
+            Ran::Done => Ok(()),
+            Ran::Failed => Err(Refused(format!("`{value}`: {}", self.store.lua.take_failure().message))),
+        };
+        self.store.lua.free_block(block);
+        done?;
+        self.store.lua.changed(self.store.cell(var));
+        self.report(var, "command".into());
+        Ok(())
+    }
+}
+
+fn refuse<'a>(what: &str, path: &str, known: impl Iterator<Item = &'a str>) -> Refused {
+    let near = nearest(path, known).map(|near| format!("; did you mean `{near}`?")).unwrap_or_default();
+    Refused(format!("there is no {what} `{path}`{near}"))
+}

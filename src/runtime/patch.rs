@@ -1,0 +1,200 @@
+//! Taking a program over while the old one runs: what the edit doesn't concern stays as it is.
+
+use std::collections::HashMap;
+use std::rc::Rc;
+use std::sync::Arc;
+
+use super::engine::{Engine, Running};
+use super::plan::Plan;
+use super::record::What;
+use crate::model::blocks::syntax_diagnostic;
+use crate::model::diff::{diff, same_actions, same_block};
+use crate::model::*;
+use crate::syntax::{Code, Diagnostic, Source, Span};
+
+impl Engine {
+    pub(super) fn load(&mut self, mut new: Program) {
+        let old = Arc::clone(&self.program);
+        let first = old.sources.is_empty();
+        let changes = if first { Vec::new() } else { diff(&old, &new) };
+        let reason = self.why_restart(&new);
+        self.follow_paths(&new);
+        for uncompiled in self.store.take_over(&old, &new) {
+            let span = new[uncompiled.block].span;
+            let finding = syntax_diagnostic(new.source(span), span, &uncompiled.error);
+            if !new.findings.iter().any(|known| known.span == finding.span) {
+                new.findings.push(finding);
+            }
+        }
+        let still = self.faults.edited(self.now, |code, span| moved(&old, &new, code, span));
+        self.plan = Rc::new(Plan::of(&new));
+        self.program = Arc::new(new);
+        let load = self.load_record(changes, reason.clone());
+        self.rare(What::Load(load));
+        still.into_iter().for_each(|fault| self.rare(What::Error(fault)));
+        self.report_findings();
+        match reason {
+            Some(reason) => self.restart(&reason),
+            None if first => self.begin(),
+            None => self.apply(&old),
+        }
+    }
+
+    /// The one case in which a program can't go on: what is active is gone, or would have done something else.
+    fn why_restart(&self, new: &Program) -> Option<String> {
+        self.tops.iter().find_map(|&machine| self.why_restart_in(machine, new))
+    }
+
+    fn why_restart_in(&self, machine: MachineId, new: &Program) -> Option<String> {
+        let running = self.running[machine.index()].as_ref()?;
+        let path = &self.program[machine].path;
+        if new.machine(path).is_none() {
+            return Some(format!("active machine {path} removed"));
+        }
+        let state = &self.program[running.state];
+        match new.state(&state.path) {
+            None => Some(format!("active state {} removed", state.path)),
+            Some(now) if !same_actions(&self.program, running.state, new, now) => {
+                Some(format!("active state {} changed", state.path))
+            }
+            Some(_) => running.nested.iter().find_map(|&nested| self.why_restart_in(nested, new)),
+        }
+    }
+
+    /// From the old program's ids to the new one's; what is gone is no longer there.
+    fn follow_paths(&mut self, new: &Program) {
+        let machines: HashMap<&str, MachineId> =
+            new.machines.iter().enumerate().map(|(i, machine)| (&*machine.path, MachineId(i as u32))).collect();
+        let states: HashMap<&str, StateId> =
+            new.states.iter().enumerate().map(|(i, state)| (&*state.path, StateId(i as u32))).collect();
+        let old = &self.program;
+        let follow = |machine: &MachineId| machines.get(&*old[*machine].path).copied();
+        let mut running: Vec<Option<Running>> = new.machines.iter().map(|_| None).collect();
+        let mut visits = vec![0; new.states.len()];
+        for (index, was) in self.running.iter().enumerate() {
+            let Some(was) = was else { continue };
+            let (Some(machine), Some(&state)) = (follow(&MachineId(index as u32)), states.get(&*old[was.state].path)) else { continue };
+            let nested = was.nested.iter().filter_map(follow).collect();
+            running[machine.index()] = Some(Running { state, entered: was.entered, nested });
+        }
+        for (state, &count) in old.states.iter().zip(&self.visits) {
+            if let Some(&now) = states.get(&*state.path) {
+                visits[now.index()] = count;
+            }
+        }
+        self.tops = self.tops.iter().filter_map(follow).collect();
+        self.running = running;
+        self.visits = visits;
+    }
+
+    fn report_findings(&mut self) {
+        let program = Arc::clone(&self.program);
+        for Diagnostic { code, span, message, help, .. } in program.findings.iter().filter(|finding| finding.is_error()) {
+            let state = enclosing_path(&program, *span);
+            self.fault(*code, *span, message.clone(), help.clone(), state);
+        }
+    }
+
+    /// What an edit asks for where nothing has to start again.
+    fn apply(&mut self, old: &Program) {
+        let program = Arc::clone(&self.program);
+        for var in self.to_initialise(old) {
+            self.initialise(var);
+        }
+        let plan = Rc::clone(&self.plan);
+        let mut spawned = Vec::new();
+        for spawn in &program.spawns {
+            if let Some((machine, state)) = spawn.target
+                && self.running[machine.index()].is_none()
+                && !spawned_before(old, &program[machine].path)
+            {
+                self.spawn(&plan, machine, state, None);
+                spawned.push(machine);
+            }
+        }
+        self.order_tops();
+        for machine in (0..program.machines.len()).map(|index| MachineId(index as u32)) {
+            spawned.extend(self.retry_spawns(old, &plan, machine));
+        }
+        for machine in spawned {
+            self.settle(&plan, machine);
+        }
+    }
+
+    /// New variables whose scope runs, those with another initial value, and those whose initial value reads them.
+    fn to_initialise(&self, old: &Program) -> Vec<VarId> {
+        let program = &self.program;
+        let alive: Vec<VarId> = (0..program.vars.len() as u32).map(VarId).filter(|&var| self.is_alive(var)).collect();
+        let before: HashMap<&str, BlockId> = old.vars.iter().map(|var| (&*var.path, var.init)).collect();
+        let mut found: Vec<bool> = vec![false; program.vars.len()];
+        for &var in &alive {
+            let was = before.get(&*program[var].path);
+            found[var.index()] = was.is_none_or(|&was| !same_block(old, was, program, program[var].init));
+        }
+        let mut grown = true;
+        while grown {
+            grown = false;
+            for &var in &alive {
+                if !found[var.index()] && program[program[var].init].uses.iter().any(|read| found[read.index()]) {
+                    found[var.index()] = true;
+                    grown = true;
+                }
+            }
+        }
+        let (globals, locals): (Vec<VarId>, Vec<VarId>) =
+            alive.into_iter().filter(|var| found[var.index()]).partition(|&var| program[var].machine.is_none());
+        globals.into_iter().chain(locals).collect()
+    }
+
+    fn order_tops(&mut self) {
+        let program = Arc::clone(&self.program);
+        let place = |machine: &MachineId| {
+            let spawns = program.spawns.iter();
+            spawns.map(|spawn| spawn.target).position(|target| target.is_some_and(|(target, _)| target == *machine)).unwrap_or(usize::MAX)
+        };
+        self.tops.sort_by_key(place);
+    }
+
+    /// An active state's spawns that named something unknown are tried again when it exists.
+    fn retry_spawns(&mut self, old: &Program, plan: &Plan, machine: MachineId) -> Vec<MachineId> {
+        let program = Arc::clone(&self.program);
+        let Some(state) = self.active_state(machine) else { return Vec::new() };
+        let Some(was) = old.state(&program[state].path) else { return Vec::new() };
+        let mut spawned = Vec::new();
+        for (before, after) in old[was].onentry.iter().zip(&program[state].onentry) {
+            if let (Entry::Spawn(Spawn { target: None, .. }), Entry::Spawn(Spawn { target: Some((machine, start)), .. })) = (before, after)
+                && self.running[machine.index()].is_none()
+            {
+                self.spawn(plan, *machine, *start, Some(state));
+                spawned.push(*machine);
+            }
+        }
+        spawned
+    }
+}
+
+fn spawned_before(old: &Program, machine: &str) -> bool {
+    old.spawns.iter().filter_map(|spawn| spawn.target).any(|(target, _)| &*old[target].path == machine)
+}
+
+/// Where a fault of the old program stands in the new one, when it is a block's and the block is the same.
+fn moved(old: &Program, new: &Program, code: Code, span: Span) -> Option<(Span, Source)> {
+    let happens_while_running = matches!(code, Code::Runtime | Code::NotBoolean | Code::OverTime | Code::OverMemory | Code::NotMilliseconds);
+    let holds = |block: &&Block| block.span.file == span.file && block.span.start <= span.start && span.end <= block.span.end;
+    let was = old.blocks.iter().find(holds).filter(|_| happens_while_running)?;
+    let owner = old.owner_path_of(was);
+    let now = new.blocks.iter().find(|block| block.code == was.code && new.owner_path_of(block) == owner)?;
+    let offset = (span.start - was.span.start) as usize;
+    let start = now.span.start as usize + offset;
+    let span = Span::new(now.span.file, start, start + (span.end - span.start) as usize);
+    Some((span, new.source(span).clone()))
+}
+
+/// The innermost state or machine that a place lies in.
+fn enclosing_path(program: &Program, span: Span) -> Arc<str> {
+    let around = |outer: Span| outer.file == span.file && outer.start <= span.start && span.end <= outer.end;
+    let machines = program.machines.iter().map(|machine| (machine.span, &machine.path));
+    let states = program.states.iter().map(|state| (state.span, &state.path));
+    let innermost = machines.chain(states).filter(|(outer, _)| around(*outer)).min_by_key(|(outer, _)| outer.end - outer.start);
+    innermost.map(|(_, path)| path.clone()).unwrap_or_default()
+}

@@ -1,0 +1,196 @@
+//! The only way out of the engine: what happened, as plain data that names things by path. One JSON object a line makes a trace.
+
+use std::sync::Arc;
+
+use serde::{Deserialize, Serialize};
+use serde_json::Value;
+
+use super::command::Command;
+use super::time::Time;
+pub use crate::model::change::{Change, Element, Op};
+use crate::model::Program;
+
+type Path = Arc<str>;
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Record {
+    pub step: u64,
+    pub t: Time,
+    #[serde(flatten)]
+    pub what: What,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(tag = "kind", rename_all = "lowercase")]
+pub enum What {
+    /// A program was taken over: the first, or an edit.
+    Load(Load),
+    /// An edit can't be read; the program that runs goes on.
+    Reject { findings: Vec<Finding> },
+    Command {
+        #[serde(flatten)]
+        command: Command,
+    },
+    /// `by`: the state whose onentry did it; none at top level.
+    Spawn { machine: Path, by: Option<Path> },
+    Enter { state: Path },
+    Exit { state: Path },
+    Transition(Taken),
+    /// A machine is no longer running.
+    Discard { machine: Path },
+    /// `by`: the path of the state, event or machine whose block did it; `init`; or `command`.
+    Set { var: Path, value: Value, by: Path },
+    Input { bridge: Path, name: Path, value: Value },
+    Output { bridge: Path, name: Path, value: Value },
+    Call { bridge: Path, name: Path, id: u64, arguments: Value },
+    Reply { bridge: Path, name: Path, id: u64, value: Value },
+    Log(Log),
+    Error(Fault),
+    Pause { reason: String },
+    Resume,
+    /// A user moved a machine to a state.
+    Force { state: Path, how: Forced },
+    Restart { reason: String },
+    /// The bridges were told to bring the robot to a halt.
+    Stop { reason: String },
+    /// Steps that couldn't be made in time and are not made up.
+    Skip { steps: u64 },
+    /// Twice a second of real time: steps a second as they are, and how late the last one was, ms.
+    Status { rate: f64, late: f64 },
+    Bridge(BridgeState),
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Load {
+    pub changes: Vec<Change>,
+    /// Whether the program began again, and because of what: `active state looking changed`.
+    pub restarted: bool,
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub reason: Option<String>,
+    /// Warnings and hints of the static checks; errors follow as records of their own.
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub findings: Vec<Finding>,
+    pub files: Vec<File>,
+    /// The program itself, for those in the same process; read from `files` elsewhere.
+    #[serde(skip)]
+    pub program: Option<Arc<Program>>,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct File {
+    pub name: Path,
+    pub text: Path,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Taken {
+    /// The machine whose state changes.
+    pub machine: Path,
+    pub from: Path,
+    pub to: Path,
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub name: Option<Path>,
+    /// The event's name, `block`, `eps` or `ontime`.
+    pub trigger: Path,
+    /// For an exit transition: the nested state it was written at.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub via: Option<Path>,
+    /// Where it is written, for drawings: which of the machine's transitions, from 0 in the order written.
+    pub index: u32,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Log {
+    pub level: Level,
+    pub message: String,
+    /// The state whose action wrote it; empty outside states.
+    pub state: Path,
+    pub file: Path,
+    pub line: usize,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Level {
+    Debug,
+    Info,
+    Warn,
+    Error,
+}
+
+impl From<crate::lua::Level> for Level {
+    fn from(level: crate::lua::Level) -> Level {
+        match level {
+            crate::lua::Level::Debug => Level::Debug,
+            crate::lua::Level::Info => Level::Info,
+            crate::lua::Level::Warn => Level::Warn,
+            crate::lua::Level::Error => Level::Error,
+        }
+    }
+}
+
+/// Something that went wrong and was skipped. Comes at its first occurrence, then at most once a second of program
+/// time while it goes on; the same `code`, `file`, `line` and `column` are the same fault. A load clears all faults;
+/// those that still stand follow it.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Fault {
+    pub code: String,
+    pub message: String,
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub help: Option<String>,
+    pub file: Path,
+    pub line: usize,
+    pub column: usize,
+    /// The state or machine it belongs to; empty at top level.
+    pub state: Path,
+    pub count: u64,
+}
+
+/// A diagnostic by place in a file.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Finding {
+    pub severity: String,
+    pub code: String,
+    pub message: String,
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub help: Option<String>,
+    pub file: Path,
+    pub line: usize,
+    pub column: usize,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Forced {
+    Transition,
+    Jump,
+}
+
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BridgeState {
+    pub bridge: Path,
+    pub kind: Path,
+    pub state: Health,
+    /// What is wrong, when something is.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub message: Option<String>,
+    /// A simulator's world, so that a screen can draw it.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub world: Option<WorldText>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Health {
+    Connecting,
+    Up,
+    Lost,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct WorldText {
+    pub name: Path,
+    pub text: Path,
+    /// The input that carries the robot's pose {x, y, theta}, as the program calls it.
+    pub pose: Path,
+}

@@ -1,0 +1,45 @@
+//! From a program's text to a program that can be run, or to what keeps it from being one.
+
+use crate::lua::Checker;
+use crate::model::{Program, Robot, resolve};
+use crate::syntax::parser::parse;
+use crate::syntax::{Code, Diagnostic, FileId, Source, Span};
+
+pub struct Compiler {
+    checker: Checker,
+    robots: Vec<Robot>,
+}
+
+/// A text that isn't a program; what runs goes on.
+pub struct Rejected {
+    pub sources: Vec<Source>,
+    pub diagnostics: Vec<Diagnostic>,
+}
+
+impl Compiler {
+    /// `robots`: those chosen on the command line.
+    pub fn new(robots: Vec<Robot>) -> Compiler {
+        Compiler { checker: Checker::new(), robots }
+    }
+
+    pub fn compile(&mut self, source: Source) -> Result<Program, Rejected> {
+        let parsed = parse(&source, FileId(0));
+        let broken = parsed.diagnostics.iter().any(Diagnostic::is_error);
+        if parsed.tree.forms.is_empty() && !broken {
+            return Err(Rejected { diagnostics: vec![empty(&source)], sources: vec![source] });
+        }
+        let mut program = resolve(&parsed.tree, source, &self.robots, &mut self.checker);
+        let broken = broken || program.findings.iter().any(|finding| matches!(finding.code, Code::LuaSyntax | Code::Smalltalk));
+        program.findings.splice(0..0, parsed.diagnostics);
+        match broken {
+            true => Err(Rejected { sources: program.sources, diagnostics: program.findings }),
+            false => Ok(program),
+        }
+    }
+}
+
+fn empty(source: &Source) -> Diagnostic {
+    let span = Span::new(FileId(0), 0, source.text.len());
+    Diagnostic::error(Code::EmptyProgram, Span { end: span.start, ..span }, "there is no program in this file")
+        .help("begin with `(machine m (state s)) (spawn m s)`, or make a first program with `lrp new NAME`")
+}

@@ -1,0 +1,227 @@
+//! The engine with its robots: samples what they say, steps, hands over what they are told. Has no clock and no thread:
+//! whoever owns one says when a step is due.
+
+use std::sync::Arc;
+
+use serde_json::Value;
+
+use super::robots::{Bridge, Problems, Stopper, Workshop};
+use crate::model::{self, Description, Program};
+use crate::runtime::record::{BridgeState, Health};
+use crate::runtime::{Command, Engine, Input, Options, Record, Refused, Time, What};
+
+pub struct Driver {
+    engine: Engine,
+    workshop: Workshop,
+    robots: Vec<Robot>,
+    /// Said by a test instead of a robot, for the next step.
+    injected: Vec<Input>,
+    /// What an edit or a forced state sent while paused: it leaves with the next step.
+    held: Vec<(Arc<str>, Arc<str>, Value)>,
+}
+
+struct Robot {
+    form: model::Bridge,
+    /// None: it couldn't be made; what is sent to it is lost.
+    bridge: Option<Box<dyn Bridge>>,
+}
+
+/// Takes records as they come.
+pub type Sink<'a> = &'a mut dyn FnMut(Record);
+
+impl Driver {
+    pub fn new(options: Options, workshop: Workshop) -> Driver {
+        Driver { engine: Engine::new(options), workshop, robots: Vec::new(), injected: Vec::new(), held: Vec::new() }
+    }
+
+    pub fn engine(&self) -> &Engine {
+        &self.engine
+    }
+
+    pub fn engine_mut(&mut self) -> &mut Engine {
+        &mut self.engine
+    }
+
+    /// How to halt each robot from another thread; to be asked anew after each load.
+    pub fn stoppers(&self) -> Vec<Stopper> {
+        self.bridges().map(|bridge| bridge.stopper()).collect()
+    }
+
+    fn bridges(&self) -> impl Iterator<Item = &dyn Bridge> {
+        self.robots.iter().filter_map(|robot| robot.bridge.as_deref())
+    }
+
+    /// A message as if a robot had sent it.
+    pub fn inject(&mut self, input: Input) {
+        self.injected.push(input);
+    }
+
+    /// One step at a program time not before that of the last one.
+    pub fn step(&mut self, now: Time, sink: Sink) {
+        self.deliver_held();
+        let mut inputs = Vec::new();
+        for robot in &mut self.robots {
+            let Some(bridge) = &mut robot.bridge else { continue };
+            bridge.advance(now);
+            let messages = bridge.sample().into_iter();
+            inputs.extend(messages.map(|(name, value)| Input { bridge: robot.form.name.clone(), name, value }));
+        }
+        inputs.append(&mut self.injected);
+        self.engine.step(now, &inputs);
+        self.hand_over(Delivery::Now, sink);
+    }
+
+    pub fn command(&mut self, command: Command, sink: Sink) -> Result<(), Refused> {
+        let held = matches!(command, Command::Load(_) | Command::Restart | Command::TransitionTo { .. } | Command::JumpTo { .. });
+        let delivery = if held && self.engine.is_paused() { Delivery::Held } else { Delivery::Now };
+        let result = match command {
+            Command::Load(program) => self.load(Arc::unwrap_or_clone(program)),
+            Command::PutAtStart { ref bridge } => {
+                self.put_at_start(bridge);
+                self.engine.command(command)
+            }
+            Command::Runstop => {
+                self.stop_all();
+                self.held.clear();
+                let result = self.engine.command(command);
+                self.engine.say(What::Stop { reason: "runstop".to_string() });
+                result
+            }
+            Command::Resume => {
+                self.deliver_held();
+                self.engine.command(command)
+            }
+            command => self.engine.command(command),
+        };
+        self.hand_over(delivery, sink);
+        result
+    }
+
+    /// Brings every robot to a halt, and says so.
+    pub fn stop(&mut self, reason: &str, sink: Sink) {
+        self.stop_all();
+        self.engine.say(What::Stop { reason: reason.to_string() });
+        self.hand_over(Delivery::Now, sink);
+    }
+
+    /// Something only the session knows, as a record among the engine's.
+    pub fn say(&mut self, what: What, sink: Sink) {
+        self.engine.say(what);
+        self.hand_over(Delivery::Now, sink);
+    }
+
+    fn stop_all(&mut self) {
+        for bridge in self.robots.iter_mut().filter_map(|robot| robot.bridge.as_mut()) {
+            bridge.stop();
+        }
+    }
+
+    fn put_at_start(&mut self, name: &str) {
+        let robots = self.robots.iter_mut().filter(|robot| name.is_empty() || &*robot.form.name == name);
+        for bridge in robots.filter_map(|robot| robot.bridge.as_mut()) {
+            bridge.put_at_start();
+        }
+    }
+
+    fn load(&mut self, mut program: Program) -> Result<(), Refused> {
+        let states = self.connect(&mut program);
+        for robot in &self.robots {
+            let (description, stale) = match &robot.bridge {
+                Some(bridge) => (bridge.description(), bridge.stale()),
+                None => (super::robots::description(&robot.form).unwrap_or_else(|| open(&robot.form)), None),
+            };
+            self.engine.describe(&robot.form.name, &description, stale);
+        }
+        let result = self.engine.command(Command::Load(Arc::new(program)));
+        for state in states {
+            self.engine.say(What::Bridge(state));
+        }
+        result
+    }
+
+    /// Makes the robots whose form is new or changed; the others stay as they are.
+    fn connect(&mut self, program: &mut Program) -> Vec<BridgeState> {
+        let mut old = std::mem::take(&mut self.robots);
+        let mut states = Vec::new();
+        for form in program.bridges.clone() {
+            let known = old.iter().position(|robot| same_form(&robot.form, &form) && robot.bridge.is_some());
+            let robot = match known {
+                Some(index) => Robot { form, ..old.swap_remove(index) },
+                None => {
+                    let (robot, state) = self.make(form, program);
+                    states.push(state);
+                    robot
+                }
+            };
+            self.robots.push(robot);
+        }
+        for bridge in old.iter_mut().filter_map(|robot| robot.bridge.as_mut()) {
+            bridge.stop();
+        }
+        states
+    }
+
+    fn make(&self, form: model::Bridge, program: &mut Program) -> (Robot, BridgeState) {
+        match self.workshop.make(&form, program.sources.len() as u16) {
+            Ok(bridge) => {
+                let state = bridge.state();
+                (Robot { form, bridge: Some(bridge) }, state)
+            }
+            Err(Problems { sources, diagnostics }) => {
+                let message = diagnostics.first().map(|first| first.message.clone());
+                program.sources.extend(sources);
+                program.findings.extend(diagnostics);
+                let (bridge, kind) = (form.name.clone(), form.kind.clone());
+                let state = BridgeState { bridge, kind, state: Health::Lost, message, world: None };
+                (Robot { form, bridge: None }, state)
+            }
+        }
+    }
+
+    fn hand_over(&mut self, delivery: Delivery, sink: Sink) {
+        let Driver { engine, robots, held, .. } = self;
+        engine.drain(|record| {
+            match &record.what {
+                What::Output { bridge, name, value } => match delivery {
+                    Delivery::Now => send(robots, bridge, name, value),
+                    Delivery::Held => held.push((bridge.clone(), name.clone(), value.clone())),
+                },
+                What::Stop { .. } => {
+                    held.clear();
+                    for bridge in robots.iter_mut().filter_map(|robot| robot.bridge.as_mut()) {
+                        bridge.stop();
+                    }
+                }
+                _ => {}
+            }
+            sink(record);
+        });
+    }
+
+    fn deliver_held(&mut self) {
+        for (bridge, name, value) in self.held.drain(..) {
+            send(&mut self.robots, &bridge, &name, &value);
+        }
+    }
+}
+
+#[derive(Clone, Copy)]
+enum Delivery {
+    Now,
+    Held,
+}
+
+fn send(robots: &mut [Robot], bridge: &str, name: &str, value: &Value) {
+    let robot = robots.iter_mut().find(|robot| &*robot.form.name == bridge);
+    if let Some(bridge) = robot.and_then(|robot| robot.bridge.as_mut()) {
+        bridge.send(name, value);
+    }
+}
+
+fn same_form(a: &model::Bridge, b: &model::Bridge) -> bool {
+    a.name == b.name && a.kind == b.kind && a.config == b.config
+}
+
+fn open(form: &model::Bridge) -> Description {
+    Description { kind: form.kind.to_string(), scope: model::description::Scope::Open, ..Description::default() }
+}

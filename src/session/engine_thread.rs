@@ -1,0 +1,272 @@
+//! The thread that owns the engine: paces it by the clock, takes commands between steps, passes records on in batches.
+
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, TryRecvError, channel};
+use std::sync::{Arc, Mutex};
+use std::thread::JoinHandle;
+use std::time::{Duration, Instant};
+
+use super::driver::Driver;
+use super::pace::{Due, Pace, Rate};
+use super::robots::{Stopper, Workshop};
+use super::trace::Clock;
+use crate::runtime::{Command, Options, Record, Time, What};
+
+#[derive(Clone, Debug)]
+pub struct Pacing {
+    pub rate: Rate,
+    pub clock: Clock,
+    /// Program time after which the run is over.
+    pub until: Option<Time>,
+}
+
+/// What comes out of the thread.
+pub enum News {
+    Records(Vec<Record>),
+    /// The run is over, or the engine can't go on.
+    Ended(End),
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum End {
+    TimeIsUp,
+    Asked,
+    /// A mistake in lrp itself; the robots were stopped.
+    Failed(String),
+}
+
+enum Message {
+    Command(Command),
+    End,
+}
+
+/// The way to an engine's thread, from any other.
+#[derive(Clone)]
+pub struct Commands {
+    messages: Sender<Message>,
+    stoppers: Arc<Mutex<Vec<Stopper>>>,
+}
+
+impl Commands {
+    pub fn send(&self, command: Command) {
+        if command == Command::Runstop {
+            self.halt();
+        }
+        // A thread that has ended has stopped its robots and said so.
+        let _ = self.messages.send(Message::Command(command));
+    }
+
+    /// Halts every robot at once, without asking the engine.
+    pub fn halt(&self) {
+        halt(&self.stoppers);
+    }
+}
+
+pub struct EngineThread {
+    commands: Commands,
+    thread: Option<JoinHandle<()>>,
+}
+
+const BATCH: Duration = Duration::from_millis(10);
+const STATUS: Duration = Duration::from_millis(500);
+
+/// Gives a required Lua module's text, or why there is none.
+pub type Library = Box<dyn Fn(&str) -> Result<String, String> + Send>;
+
+impl EngineThread {
+    pub fn start(options: Options, workshop: Workshop, library: Library, pacing: Pacing, news: impl Fn(News) + Send + 'static) -> Self {
+        let (messages, inbox) = channel();
+        let stoppers: Arc<Mutex<Vec<Stopper>>> = Arc::default();
+        let shared = Arc::clone(&stoppers);
+        let body = move || {
+            let run = AssertUnwindSafe(|| {
+                let mut driver = Driver::new(options, workshop);
+                driver.engine_mut().library(library);
+                Loop::new(driver, pacing, Arc::clone(&shared), &news).run(&inbox)
+            });
+            let end = catch_unwind(run).unwrap_or_else(|panic| {
+                halt(&shared);
+                End::Failed(panic_text(&*panic))
+            });
+            news(News::Ended(end));
+        };
+        let thread = std::thread::Builder::new().name("engine".to_string()).spawn(body).expect("a thread can be started");
+        EngineThread { commands: Commands { messages, stoppers }, thread: Some(thread) }
+    }
+
+    pub fn commands(&self) -> &Commands {
+        &self.commands
+    }
+}
+
+impl Drop for EngineThread {
+    fn drop(&mut self) {
+        self.commands.halt();
+        let _ = self.commands.messages.send(Message::End);
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
+
+fn halt(stoppers: &Mutex<Vec<Stopper>>) {
+    let stoppers = stoppers.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+    for stop in stoppers.iter() {
+        stop();
+    }
+}
+
+fn panic_text(panic: &(dyn std::any::Any + Send)) -> String {
+    let text = panic.downcast_ref::<String>().cloned();
+    text.or_else(|| panic.downcast_ref::<&str>().map(ToString::to_string)).unwrap_or_else(|| "unknown".to_string())
+}
+
+struct Loop<'n, N: Fn(News)> {
+    driver: Driver,
+    pacing: Pacing,
+    pace: Pace,
+    stoppers: Arc<Mutex<Vec<Stopper>>>,
+    news: &'n N,
+    batch: Vec<Record>,
+    flushed: Instant,
+    started: Instant,
+    loaded: bool,
+    status: Status,
+}
+
+struct Status {
+    since: Instant,
+    steps: u64,
+    late: Duration,
+}
+
+impl<'n, N: Fn(News)> Loop<'n, N> {
+    fn new(driver: Driver, pacing: Pacing, stoppers: Arc<Mutex<Vec<Stopper>>>, news: &'n N) -> Self {
+        let now = Instant::now();
+        let status = Status { since: now, steps: 0, late: Duration::ZERO };
+        let pace = Pace::new(pacing.rate, Duration::ZERO);
+        Loop { driver, pacing, pace, stoppers, news, batch: Vec::new(), flushed: now, started: now, loaded: false, status }
+    }
+
+    fn run(&mut self, inbox: &Receiver<Message>) -> End {
+        loop {
+            let end = match self.next(inbox) {
+                Next::Message(Message::Command(command)) => {
+                    self.command(command);
+                    None
+                }
+                Next::Message(Message::End) => Some(End::Asked),
+                Next::Step => self.step().then_some(End::TimeIsUp),
+                Next::Nothing => None,
+            };
+            self.report_status();
+            if end.is_some() || self.flushed.elapsed() >= BATCH {
+                self.flush();
+            }
+            if let Some(end) = end {
+                self.driver.stop("the end", &mut |record| self.batch.push(record));
+                self.flush();
+                return end;
+            }
+        }
+    }
+
+    fn next(&mut self, inbox: &Receiver<Message>) -> Next {
+        let wait = match (self.runs(), self.pacing.clock) {
+            (false, _) => STATUS,
+            (true, Clock::Virtual) => Duration::ZERO,
+            (true, Clock::Real) => self.pace.wait(self.started.elapsed()),
+        };
+        if wait.is_zero() {
+            return match inbox.try_recv() {
+                Ok(message) => Next::Message(message),
+                Err(TryRecvError::Empty) => Next::Step,
+                Err(TryRecvError::Disconnected) => Next::Message(Message::End),
+            };
+        }
+        self.flush();
+        match inbox.recv_timeout(wait) {
+            Ok(message) => Next::Message(message),
+            Err(RecvTimeoutError::Timeout) if self.runs() => Next::Step,
+            Err(RecvTimeoutError::Timeout) => Next::Nothing,
+            Err(RecvTimeoutError::Disconnected) => Next::Message(Message::End),
+        }
+    }
+
+    fn runs(&self) -> bool {
+        self.loaded && !self.driver.engine().is_paused()
+    }
+
+    fn command(&mut self, command: Command) {
+        let real = self.started.elapsed();
+        let loads = matches!(command, Command::Load(_));
+        match &command {
+            Command::Rate { hz } => {
+                if let Some(rate) = Rate::new(*hz) {
+                    self.pace.set_rate(rate, real);
+                }
+            }
+            Command::Resume => self.pace.resume(real),
+            Command::Step if self.loaded && self.driver.engine().is_paused() => {
+                let _ = self.driver.command(command, &mut |record| self.batch.push(record));
+                let now = self.pace.next();
+                self.driver.step(now, &mut |record| self.batch.push(record));
+                return;
+            }
+            _ => {}
+        }
+        // A refusal is among the records.
+        let _ = self.driver.command(command, &mut |record| self.batch.push(record));
+        if loads {
+            *self.stoppers.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) = self.driver.stoppers();
+            if !std::mem::replace(&mut self.loaded, true) {
+                self.pace.resume(self.started.elapsed());
+            }
+        }
+    }
+
+    /// Whether the run is over.
+    fn step(&mut self) -> bool {
+        let due = match self.pacing.clock {
+            Clock::Virtual => Due { now: self.pace.next(), skipped: 0, late: Duration::ZERO },
+            Clock::Real => self.pace.take(self.started.elapsed()),
+        };
+        if self.pacing.until.is_some_and(|until| due.now > until) {
+            return true;
+        }
+        let batch = &mut self.batch;
+        if due.skipped > 0 {
+            self.driver.say(What::Skip { steps: due.skipped }, &mut |record| batch.push(record));
+        }
+        self.driver.step(due.now, &mut |record| batch.push(record));
+        self.status.steps += 1;
+        self.status.late = due.late;
+        self.pacing.until == Some(due.now)
+    }
+
+    fn report_status(&mut self) {
+        let since = self.status.since.elapsed();
+        if self.pacing.clock == Clock::Virtual || since < STATUS {
+            return;
+        }
+        let rate = self.status.steps as f64 / since.as_secs_f64();
+        let round = |number: f64| (number * 10.0).round() / 10.0;
+        let what = What::Status { rate: round(rate), late: round(self.status.late.as_secs_f64() * 1e3) };
+        let batch = &mut self.batch;
+        self.driver.say(what, &mut |record| batch.push(record));
+        self.status = Status { since: Instant::now(), steps: 0, late: Duration::ZERO };
+    }
+
+    fn flush(&mut self) {
+        if !self.batch.is_empty() {
+            (self.news)(News::Records(std::mem::take(&mut self.batch)));
+        }
+        self.flushed = Instant::now();
+    }
+}
+
+enum Next {
+    Message(Message),
+    Step,
+    Nothing,
+}

@@ -1,0 +1,16 @@
+//! The engine among threads, files and robots: paces it, feeds it with saves and commands, writes its records down.
+
+pub mod compile;
+pub mod driver;
+pub mod engine_thread;
+pub mod findings;
+pub mod headless;
+pub mod live;
+pub mod loader;
+pub mod modules;
+pub mod pace;
+pub mod robots;
+pub mod signals;
+pub mod test_runner;
+pub mod trace;
+pub mod watch;

@@ -1,0 +1,104 @@
+//! Records as lines of JSON. A trace that can't be written ends with one report; the program goes on.
+
+use std::fs::File;
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+use std::time::{SystemTime, UNIX_EPOCH};
+
+use serde::Serialize;
+
+use crate::runtime::Record;
+use crate::runtime::record;
+
+pub struct Trace {
+    out: Box<dyn Write + Send>,
+    path: PathBuf,
+    broken: bool,
+}
+
+/// What the first line of a trace tells besides the program's texts.
+pub struct Header<'a> {
+    pub files: &'a [record::File],
+    pub rate: f64,
+    pub seed: u64,
+    pub clock: Clock,
+}
+
+#[derive(Serialize)]
+struct FirstLine<'a> {
+    /// The version of the format.
+    lrp: u32,
+    /// Milliseconds since 1970.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    start: Option<u64>,
+    rate: f64,
+    seed: u64,
+    files: &'a [record::File],
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Clock {
+    Real,
+    /// The trace then says nothing of real time, so that equal runs give equal traces.
+    Virtual,
+}
+
+impl Trace {
+    /// `-` is standard output.
+    pub fn create(path: &Path) -> io::Result<Trace> {
+        let out: Box<dyn Write + Send> = match path.to_str() {
+            Some("-") => Box::new(BufWriter::new(io::stdout())),
+            _ => Box::new(BufWriter::new(File::create(path)?)),
+        };
+        Ok(Trace { out, path: path.to_path_buf(), broken: false })
+    }
+
+    pub fn header(&mut self, header: &Header) {
+        let start = (header.clock == Clock::Real).then(|| {
+            let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+            now.as_millis() as u64
+        });
+        self.line(&FirstLine { lrp: 1, start, rate: header.rate, seed: header.seed, files: header.files });
+    }
+
+    pub fn record(&mut self, record: &Record) {
+        self.line(record);
+    }
+
+    pub fn flush(&mut self) {
+        if !self.broken {
+            let result = self.out.flush();
+            self.check(result);
+        }
+    }
+
+    fn line(&mut self, line: &impl serde::Serialize) {
+        if self.broken {
+            return;
+        }
+        let result = serde_json::to_writer(&mut self.out, line).map_err(io::Error::from);
+        let result = result.and_then(|()| self.out.write_all(b"\n"));
+        self.check(result);
+    }
+
+    fn check(&mut self, result: io::Result<()>) {
+        if let Err(error) = result {
+            self.broken = true;
+            // A reader that has seen enough, as in `| head`, is no fault.
+            if error.kind() != io::ErrorKind::BrokenPipe {
+                eprintln!("lrp: the trace {} ends here: {error}", self.path.display());
+            }
+        }
+    }
+
+    /// Whether nothing more can be written.
+    pub fn is_broken(&self) -> bool {
+        self.broken
+    }
+}
+
+impl Drop for Trace {
+    fn drop(&mut self) {
+        self.flush();
+    }
+}

@@ -1,0 +1,127 @@
+//! A finished drawing: cells that say what they show and what they belong to, so that a screen can colour them. Knows
+//! nothing of how it was laid out.
+
+use std::borrow::Cow;
+use std::collections::BTreeMap;
+
+use super::layout::{Point, Rect};
+
+/// What a cell belongs to. Numbers are indices into the nodes and edges of the graph.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    Blank,
+    /// The border of a node's box, and what of its inside is free.
+    Box(usize),
+    Name(usize),
+    /// The mark of a nested machine.
+    Mark(usize),
+    /// Room for the name of the state that is active inside; blank in the drawing itself.
+    Inside(usize),
+    Line(usize),
+    /// Two edges, both straight on.
+    Crossing {
+        across: usize,
+        down: usize,
+    },
+    Label(usize),
+    Head(usize),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Cell {
+    /// `'\0'` where the wide character to the left continues. Combining characters are left out: [`Drawing::symbol`] has them.
+    pub glyph: char,
+    pub part: Part,
+}
+
+impl Cell {
+    pub(super) const BLANK: Cell = Cell {
+        glyph: ' ',
+        part: Part::Blank,
+    };
+}
+
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Drawing {
+    /// In columns.
+    pub width: u16,
+    /// In rows.
+    pub height: u16,
+    pub(super) cells: Vec<Cell>,
+    /// Clusters of more than one character, by the index of their cell.
+    pub(super) clusters: BTreeMap<usize, String>,
+    pub(super) boxes: Vec<Rect>,
+    pub(super) rooms: Vec<Option<Rect>>,
+}
+
+impl Drawing {
+    /// All cells, row after row.
+    pub fn cells(&self) -> &[Cell] {
+        &self.cells
+    }
+
+    /// A cell of the drawing; blank outside of it.
+    pub fn cell(&self, x: u16, y: u16) -> Cell {
+        self.index(x, y).map_or(Cell::BLANK, |i| self.cells[i])
+    }
+
+    /// What to print at a cell: nothing where a wide character continues.
+    pub fn symbol(&self, x: u16, y: u16) -> Cow<'_, str> {
+        match self.index(x, y) {
+            None => Cow::Borrowed(" "),
+            Some(i) => self.symbol_at(i),
+        }
+    }
+
+    /// The box of a node, borders included; `None` if there is no such node.
+    pub fn node_rect(&self, node: usize) -> Option<Rect> {
+        self.boxes.get(node).copied()
+    }
+
+    /// Where to write the name of the state that is active inside a node.
+    pub fn inside_rect(&self, node: usize) -> Option<Rect> {
+        self.rooms.get(node).copied().flatten()
+    }
+
+    /// All cells that show an edge: line, crossings, label and head, in reading order.
+    pub fn edge_cells(&self, edge: usize) -> impl Iterator<Item = Point> + '_ {
+        let width = usize::from(self.width).max(1);
+        let cells = self
+            .cells
+            .iter()
+            .enumerate()
+            .filter(move |(_, cell)| match cell.part {
+                Part::Line(e) | Part::Label(e) | Part::Head(e) => e == edge,
+                Part::Crossing { across, down } => across == edge || down == edge,
+                _ => false,
+            });
+        cells.map(move |(i, _)| super::layout::point(i % width, i / width))
+    }
+
+    /// The drawing as lines of text without trailing blanks, each ended by a line feed.
+    pub fn text(&self) -> String {
+        let mut out = String::new();
+        for row in 0..usize::from(self.height) {
+            let start = row * usize::from(self.width);
+            for i in start..start + usize::from(self.width) {
+                out.push_str(&self.symbol_at(i));
+            }
+            out.truncate(out.trim_end_matches(' ').len());
+            out.push('\n');
+        }
+        out
+    }
+
+    pub(super) fn index(&self, x: u16, y: u16) -> Option<usize> {
+        (x < self.width && y < self.height)
+            .then(|| usize::from(y) * usize::from(self.width) + usize::from(x))
+    }
+
+    fn symbol_at(&self, i: usize) -> Cow<'_, str> {
+        match (self.clusters.get(&i), self.cells[i].glyph) {
+            (Some(cluster), _) => Cow::Borrowed(cluster),
+            (None, '\0') => Cow::Borrowed(""),
+            (None, glyph) => Cow::Owned(glyph.to_string()),
+        }
+    }
+}

@@ -1,0 +1,54 @@
+//! Gives each of the lines on one side of a column of boxes a lane of its own. Knows nothing of what the lines join.
+
+/// A line's upright run.
+#[derive(Clone, Copy, Debug)]
+pub struct Track {
+    /// Its first and last row, both included.
+    pub top: usize,
+    pub bottom: usize,
+}
+
+impl Track {
+    pub fn between(a: usize, b: usize) -> Track {
+        Track {
+            top: a.min(b),
+            bottom: a.max(b),
+        }
+    }
+
+    pub fn covers(self, row: usize) -> bool {
+        self.top <= row && row <= self.bottom
+    }
+}
+
+/// The lane of each track, as a distance from the boxes in columns. `reach` says for each row how far from the boxes
+/// other things stand there.
+///
+/// Short tracks choose first, so whatever one track encloses lies inside it, and two tracks cross at most once.
+pub fn assign(tracks: &[Track], reach: &[usize]) -> Vec<usize> {
+    let mut order: Vec<usize> = (0..tracks.len()).collect();
+    order.sort_by_key(|&i| (tracks[i].bottom - tracks[i].top, i));
+    let mut taken: Vec<Vec<Track>> = Vec::new();
+    let mut lanes = vec![0; tracks.len()];
+    for i in order {
+        let track = tracks[i];
+        let mut lane = 1 + reach[track.top..=track.bottom]
+            .iter()
+            .max()
+            .copied()
+            .unwrap_or(0);
+        while taken.get(lane).is_some_and(|others| {
+            others
+                .iter()
+                .any(|o| o.top <= track.bottom && track.top <= o.bottom)
+        }) {
+            lane += 1;
+        }
+        if taken.len() <= lane {
+            taken.resize(lane + 1, Vec::new());
+        }
+        taken[lane].push(track);
+        lanes[i] = lane;
+    }
+    lanes
+}

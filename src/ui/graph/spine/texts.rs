@@ -1,0 +1,100 @@
+//! What is to be written into a spine and how wide it is. Knows nothing of places.
+
+use crate::ui::graph::{Glyphs, Graph, Node, Options, Rows, words};
+
+/// What a box shows of a nested machine.
+#[derive(Clone, Copy, Debug)]
+enum Nested {
+    No,
+    Marked,
+    /// Marked, with a row that has room for a name of so many columns.
+    Room(usize),
+}
+
+/// Columns of the mark of a nested machine, with the blank before it.
+const MARK: usize = 2;
+
+pub struct Texts {
+    pub glyphs: Glyphs,
+    names: Vec<String>,
+    labels: Vec<String>,
+    nested: Vec<Nested>,
+}
+
+/// Upper bounds for the width of texts, in columns.
+#[derive(Clone, Copy, Debug)]
+pub struct Limits {
+    pub name: usize,
+    pub label: usize,
+}
+
+impl Texts {
+    pub fn of(graph: &Graph, options: &Options) -> Texts {
+        let glyphs = options.glyphs;
+        let clean = |text: &String| words::clean(text, glyphs);
+        let nested = |node: &Node| match (&node.inside, options.rows) {
+            (None, _) => Nested::No,
+            (Some(_), Rows::One) => Nested::Marked,
+            (Some(name), Rows::Two) => Nested::Room(words::width(&clean(name))),
+        };
+        Texts {
+            glyphs,
+            names: graph.nodes.iter().map(|node| clean(&node.name)).collect(),
+            labels: graph.edges.iter().map(|edge| clean(&edge.label)).collect(),
+            nested: graph.nodes.iter().map(nested).collect(),
+        }
+    }
+
+    /// The limits that shorten nothing; each is at least 1.
+    pub fn full(&self) -> Limits {
+        let longest = |texts: &[String]| texts.iter().map(|text| words::width(text)).max();
+        Limits {
+            name: longest(&self.names).unwrap_or(0).max(1),
+            label: longest(&self.labels).unwrap_or(0).max(1),
+        }
+    }
+
+    /// The width of the widest box's text, at least 1.
+    pub fn widest(&self, limits: Limits) -> usize {
+        let nodes = 0..self.names.len();
+        let width = |node: usize| {
+            let name = words::width(&self.names[node]).min(limits.name) + self.mark(node);
+            match self.nested[node] {
+                Nested::Room(room) => name.max(room.min(limits.name)),
+                _ => name,
+            }
+        };
+        nodes.map(width).max().unwrap_or(0).max(1)
+    }
+
+    pub fn label_width(&self, edge: usize, limits: Limits) -> usize {
+        words::width(&self.labels[edge]).min(limits.label)
+    }
+
+    pub fn name(&self, node: usize, limits: Limits) -> String {
+        words::shorten(&self.names[node], limits.name, self.glyphs)
+    }
+
+    /// The label in at most `room` columns; `None` if nothing of it can be shown.
+    pub fn label(&self, edge: usize, room: usize) -> Option<String> {
+        let text = words::shorten(&self.labels[edge], room, self.glyphs);
+        (!text.is_empty()).then_some(text)
+    }
+
+    /// The columns that the mark of a nested machine takes beside the name.
+    pub fn mark(&self, node: usize) -> usize {
+        match self.nested[node] {
+            Nested::No => 0,
+            Nested::Marked | Nested::Room(_) => MARK,
+        }
+    }
+
+    pub fn has_room(&self, node: usize) -> bool {
+        matches!(self.nested[node], Nested::Room(_))
+    }
+
+    /// The rows of text in a box.
+    pub fn rows(&self, node: usize) -> usize {
+        if self.has_room(node) { 2 } else { 1 }
+    }
+}
