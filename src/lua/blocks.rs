@@ -113,6 +113,7 @@ impl Lua {
             && let Some(chunk) = self.desk.chunks.borrow_mut().get_mut(&chunk)
         {
             chunk.block = None;
+            chunk.scope = Box::default();
         }
         self.note_slot(block.0, Slot::Empty);
         self.stack.release(block.0);

@@ -111,7 +111,7 @@ impl<'a> Reader<'a> {
         let (words, _) = self.take(count.checked_mul(4)?)?.as_chunks::<4>();
         let code: Vec<_> = words
             .iter()
-            .map(|word| Instruction(u32::from_le_bytes(*word)))
+            .map(|word| Instruction(u32::from_ne_bytes(*word)))
             .collect();
         let constants = self.constants()?;
         let environments = self.environments(outer)?;

@@ -120,10 +120,22 @@ impl Stack {
         };
         match (self.guard.leave(), status) {
             (false, ffi::LUA_OK) => Ok(()),
+            (true, ffi::LUA_OK) => Err(self.stopped_too_late()),
             (true, _) => Err(Trouble::OverTime),
             (false, ffi::LUA_ERRMEM) => Err(Trouble::OverMemory),
             (false, _) => Err(Trouble::Error),
         }
+    }
+
+    /// A call can end by itself while it is being stopped: its results count as its error.
+    #[cold]
+    fn stopped_too_late(&self) -> Trouble {
+        // SAFETY: SPARE slots are free.
+        unsafe {
+            ffi::lua_settop(self.state, self.top);
+            ffi::lua_pushnil(self.state);
+        }
+        Trouble::OverTime
     }
 
     /// Takes the results of a call off the stack again.

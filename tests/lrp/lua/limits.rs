@@ -16,6 +16,8 @@ const RUNAWAYS: &[&str] = &[
     "while true do end",
     "::again:: goto again",
     "repeat until false",
+    "pcall(function() while true do end end)",
+    "return pcall(pcall, function() while true do end end)",
     "while true do pcall(function() while true do end end) end",
     "local function f() pcall(f) f() end while true do pcall(f) end",
     "xpcall(function() error('x') end, function() while true do end end)",
@@ -244,4 +246,37 @@ fn another_thread_sees_a_block_that_can_not_be_stopped() {
     let block = compile(&mut lua, "stuck()");
     assert_eq!(lua.run(block), Ran::Failed);
     assert_eq!(lua.take_failure().kind, FailureKind::OverTime);
+}
+
+#[test]
+fn only_what_ran_for_too_long_is_stopped() {
+    let limit = Duration::from_millis(2);
+    let mut lua = Lua::new(
+        Limits {
+            time: limit,
+            ..Limits::default()
+        },
+        Access::Sandboxed,
+        1,
+    );
+    let count = lua.cell();
+    let bodies = [
+        "for i = 1, count do pcall(math.abs, i) end",
+        "local c = coroutine.wrap(function() while true do coroutine.yield() end end) for i = 1, count do c() end",
+        "for i = 1, count do coroutine.resume(coroutine.create(function() pcall(error) end)) end",
+        "local s = ('ab'):rep(count // 10) return s:gsub('a+', '%0')",
+    ];
+    let blocks = bodies.map(|body| lua.compile(body, &[("count", count)]).unwrap());
+    for round in 0..200_u64 {
+        for block in blocks {
+            lua.set(count, &json!(round * round * 7919 % 40_000));
+            let start = Instant::now();
+            let ran = lua.run(block);
+            let took = start.elapsed();
+            if ran == Ran::Failed {
+                assert_eq!(lua.take_failure().kind, FailureKind::OverTime);
+                assert!(took >= limit, "stopped after {took:?}");
+            }
+        }
+    }
 }
