@@ -3,6 +3,7 @@
 //!
 //! A variable is an upvalue that blocks share; a block is a function on Lua's stack. Both are what Lua itself is fastest at.
 
+mod base;
 mod blocks;
 mod bounded;
 mod bytecode;
