@@ -17,9 +17,9 @@ pub fn main() -> ExitCode {
         Task::Live(run) => crate::ui::live::run(run.setup(), run.trace),
         Task::Run(run) => crate::session::headless::run(run.setup(), run.trace),
         Task::Check { files, format } => check::check(&files, format),
-        Task::Test { paths } => crate::session::test_runner::run(&paths),
         Task::Graph(graph) => graph::print(&graph),
         Task::New { name } => new::create(&name),
+        Task::Test { paths } => crate::session::test_runner::run(&paths),
         Task::Bridges { kind } => check::bridges(kind.as_deref()),
     }
 }

@@ -111,8 +111,8 @@ impl Engine {
 
     fn failed(&mut self, block: BlockId) {
         let failure = self.store.lua.take_failure();
-        if let Some(hint) = self.robots.no_message(&failure.message) {
-            return self.waiting_for_message(block, &failure, hint);
+        if let Some(missing) = self.robots.no_message(&failure.message) {
+            return self.waiting_for_message(block, &failure, missing);
         }
         let (code, help) = match failure.kind {
             FailureKind::Runtime => (Code::Runtime, None),
@@ -132,14 +132,15 @@ impl Engine {
     }
 
     /// Not a mistake: the robot has not spoken yet. Said once for each input.
-    fn waiting_for_message(&mut self, block: BlockId, failure: &Failure, hint: super::robot::NoMessage) {
-        if hint.said_before {
+    fn waiting_for_message(&mut self, block: BlockId, failure: &Failure, missing: super::robot::NoMessage) {
+        // Before the first step nothing can have come.
+        if self.step == 0 || !self.robots.is_news(&missing) {
             return;
         }
         let span = self.failure_span(block, failure);
         let source = self.program.source(span);
         let line = source.line(span.start as usize);
-        let message = format!("`{}.{}` has had no message yet; what needs it is skipped until one comes", hint.bridge, hint.input);
+        let message = format!("`{}.{}` has had no message yet; what needs it is skipped until one comes", missing.bridge, missing.input);
         let log = Log { level: super::record::Level::Info, message, state: self.program.owner_path(block), file: source.name.clone(), line };
         self.rare(What::Log(log));
     }

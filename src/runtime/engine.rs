@@ -8,7 +8,7 @@ use serde_json::Value;
 use super::faults::Faults;
 use super::note::Note;
 use super::plan::Plan;
-use super::record::{Load, Record, What};
+use super::record::{Change, Load, Record, What};
 use super::robot::Robots;
 use super::store::Store;
 use super::time::Time;

@@ -98,7 +98,4 @@ impl Faults {
         self.known.iter().map(|entry| entry.fault.clone()).collect()
     }
 
-    pub fn is_empty(&self) -> bool {
-        self.known.is_empty()
-    }
 }

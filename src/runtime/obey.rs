@@ -120,13 +120,11 @@ impl Engine {
         let in_scope = Names::of(&program).vars_in_scope(machine);
         let scope: Vec<(&str, Cell)> = in_scope.iter().map(|&var| (&*program[var].name, self.store.cell(var))).collect();
         let block = self.store.lua.compile(value, &scope).map_err(|error| Refused(format!("`{value}`: {}", error.message)))?;
-        let cell = self.store.lua.cell();
-        let done = match self.store.lua.init(block, cell) {
-            Ran::Done => Ok(self.store.lua.copy(cell, self.store.cell(var))),
+        let done = match self.store.lua.init(block, self.store.cell(var)) {
+            Ran::Done => Ok(()),
             Ran::Failed => Err(Refused(format!("`{value}`: {}", self.store.lua.take_failure().message))),
         };
         self.store.lua.free_block(block);
-        self.store.lua.free_cell(cell);
         done?;
         self.store.lua.changed(self.store.cell(var));
         self.report(var, "command".into());

@@ -118,6 +118,17 @@ pub enum Level {
     Error,
 }
 
+impl From<crate::lua::Level> for Level {
+    fn from(level: crate::lua::Level) -> Level {
+        match level {
+            crate::lua::Level::Debug => Level::Debug,
+            crate::lua::Level::Info => Level::Info,
+            crate::lua::Level::Warn => Level::Warn,
+            crate::lua::Level::Error => Level::Error,
+        }
+    }
+}
+
 /// Something that went wrong and was skipped. Comes at its first occurrence, then at most once a second of program
 /// time while it goes on; the same `code`, `file`, `line` and `column` are the same fault. A load clears all faults;
 /// those that still stand follow it.

@@ -4,7 +4,8 @@
 use std::collections::HashSet;
 use std::sync::Arc;
 
-use mlua::{Function, LuaSerdeExt, SerializeOptions, Table};
+use mlua::serde::{LuaSerdeExt, SerializeOptions};
+use mlua::{Function, Table};
 use serde_json::{Value, json};
 
 use super::engine::Input;
@@ -35,7 +36,6 @@ struct Robot {
 pub(super) struct NoMessage {
     pub bridge: Arc<str>,
     pub input: String,
-    pub said_before: bool,
 }
 
 impl Robots {
@@ -56,7 +56,8 @@ impl Robots {
             let (object, engine) = make(lua, name, &offer)?;
             made = Some(engine);
             Ok(mlua::Value::Table(object))
-        });
+        })
+        .expect("a name can be added");
         let engine = made.expect("the maker was called");
         let function = |key: &str| engine.get::<Function>(key).expect("robot.lua gives its functions");
         self.robots.push(Robot {
@@ -91,7 +92,7 @@ impl Robots {
     }
 
     /// Whether a block failed because it indexed an input that has had no message.
-    pub fn no_message(&mut self, message: &str) -> Option<NoMessage> {
+    pub fn no_message(&self, message: &str) -> Option<NoMessage> {
         if !message.contains("attempt to index a nil value") {
             return None;
         }
@@ -99,11 +100,15 @@ impl Robots {
             let input = robot.missed.call::<Option<String>>(()).ok().flatten();
             if let Some(input) = input.filter(|input| message.contains(&format!("'{input}'"))) {
                 let bridge = robot.name.clone();
-                let said_before = !self.said.insert((bridge.clone(), input.clone()));
-                return Some(NoMessage { bridge, input, said_before });
+                return Some(NoMessage { bridge, input });
             }
         }
         None
+    }
+
+    /// Whether it is still to be said that an input has had no message.
+    pub fn is_news(&mut self, missing: &NoMessage) -> bool {
+        self.said.insert((missing.bridge.clone(), missing.input.clone()))
     }
 }
 

@@ -46,6 +46,12 @@ impl Store {
         &self.blocks[block.index()]
     }
 
+    /// The block that a function was compiled from.
+    pub fn find(&self, function: lua::Block) -> Option<BlockId> {
+        let index = self.blocks.iter().position(|compiled| compiled.lua == Some(function))?;
+        Some(BlockId(index as u32))
+    }
+
     /// The block to run, unless it can't be compiled or was stopped.
     pub fn ready(&self, block: BlockId) -> Option<lua::Block> {
         let compiled = &self.blocks[block.index()];

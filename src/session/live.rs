@@ -1,5 +1,7 @@
 //! A program file that runs: its engine's thread, and a watch on the file whose every save becomes a command.
 
+use std::fmt;
+use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, channel};
@@ -8,12 +10,30 @@ use super::compile::{Compiler, Rejected};
 use super::engine_thread::{Commands, EngineThread, News, Pacing};
 use super::loader::{self, Unreadable};
 use super::robots::{Robots, Workshop};
+use super::trace::Conditions;
 use super::watch::{Saved, Watch, Watched};
 use super::{findings, modules};
 use crate::model::Robot;
 use crate::runtime::record::Finding;
 use crate::runtime::{Command, Options};
 use crate::syntax::Source;
+
+/// Why a session can't begin, as one line.
+#[derive(Debug)]
+pub enum NotStarted {
+    Unreadable(Unreadable),
+    /// The system gives no more threads.
+    System(io::Error),
+}
+
+impl fmt::Display for NotStarted {
+    fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
+        match self {
+            NotStarted::Unreadable(why) => why.fmt(f),
+            NotStarted::System(error) => write!(f, "the system is short of something: {error}"),
+        }
+    }
+}
 
 #[derive(Clone, Debug)]
 pub struct Setup {
@@ -22,6 +42,12 @@ pub struct Setup {
     pub pacing: Pacing,
     /// Chosen on the command line.
     pub robots: Vec<Robot>,
+}
+
+impl Setup {
+    pub fn conditions(&self) -> Conditions {
+        Conditions { rate: self.pacing.rate.hz(), seed: self.options.seed, clock: self.pacing.clock }
+    }
 }
 
 /// Dropping it stops the robots and ends its threads.
@@ -33,10 +59,10 @@ pub struct Session {
 impl Session {
     /// Starts the program of a file, whether it can be read as one or not: a save can mend it. Fails only where there is
     /// no text to be had.
-    pub fn start(setup: Setup, news: impl Fn(News) + Send + 'static) -> Result<Session, Unreadable> {
+    pub fn start(setup: Setup, news: impl Fn(News) + Send + 'static) -> Result<Session, NotStarted> {
         let source = match loader::read(&setup.file) {
             Err(Unreadable::Empty { .. }) => Source::new(setup.file.display().to_string(), ""),
-            read => read?,
+            read => read.map_err(NotStarted::Unreadable)?,
         };
         let folder = folder(&setup.file);
         let workshop = Workshop { folder: folder.clone(), seed: setup.options.seed, robots: Robots::AsProgrammed };
@@ -50,8 +76,8 @@ impl Session {
         });
         let commands = engine.commands().clone();
         let edits = move || edit(source, &inbox, Compiler::new(setup.robots), &commands);
-        std::thread::Builder::new().name("edits".to_string()).spawn(edits).map_err(Unreadable::from)?;
-        Ok(Session { _watch: watch.map_err(Unreadable::from)?, engine })
+        std::thread::Builder::new().name("edits".to_string()).spawn(edits).map_err(NotStarted::System)?;
+        Ok(Session { _watch: watch.map_err(NotStarted::System)?, engine })
     }
 
     pub fn commands(&self) -> &Commands {
@@ -60,7 +86,7 @@ impl Session {
 }
 
 pub fn folder(file: &Path) -> PathBuf {
-    file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_path_buf()
+    file.parent().unwrap_or(Path::new("")).to_path_buf()
 }
 
 /// Compiles beside the engine's thread, which only takes finished programs over.

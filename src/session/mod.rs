@@ -11,5 +11,6 @@ pub mod modules;
 pub mod pace;
 pub mod robots;
 pub mod signals;
+pub mod test_runner;
 pub mod trace;
 pub mod watch;

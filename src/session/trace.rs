@@ -5,23 +5,37 @@ use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 use std::time::{SystemTime, UNIX_EPOCH};
 
-use serde_json::json;
+use serde::Serialize;
 
-use crate::runtime::Record;
 use crate::runtime::record;
+use crate::runtime::{Record, What};
 
 pub struct Trace {
     out: Box<dyn Write + Send>,
     path: PathBuf,
+    /// Until the header is written.
+    conditions: Option<Conditions>,
     broken: bool,
 }
 
 /// What the first line of a trace tells besides the program's texts.
-pub struct Header<'a> {
-    pub files: &'a [record::File],
+#[derive(Clone, Debug)]
+pub struct Conditions {
     pub rate: f64,
     pub seed: u64,
     pub clock: Clock,
+}
+
+#[derive(Serialize)]
+struct FirstLine<'a> {
+    /// The version of the format.
+    lrp: u32,
+    /// Milliseconds since 1970.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    start: Option<u64>,
+    rate: f64,
+    seed: u64,
+    files: &'a [record::File],
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,24 +47,30 @@ pub enum Clock {
 
 impl Trace {
     /// `-` is standard output.
-    pub fn create(path: &Path) -> io::Result<Trace> {
+    pub fn create(path: &Path, conditions: Conditions) -> io::Result<Trace> {
         let out: Box<dyn Write + Send> = match path.to_str() {
             Some("-") => Box::new(BufWriter::new(io::stdout())),
             _ => Box::new(BufWriter::new(File::create(path)?)),
         };
-        Ok(Trace { out, path: path.to_path_buf(), broken: false })
+        Ok(Trace { out, path: path.to_path_buf(), conditions: Some(conditions), broken: false })
     }
 
-    pub fn header(&mut self, header: &Header) {
-        let mut line = json!({ "lrp": 1, "files": header.files, "rate": header.rate, "seed": header.seed });
-        if header.clock == Clock::Real {
+    fn header(&mut self, conditions: &Conditions, files: &[record::File]) {
+        let start = (conditions.clock == Clock::Real).then(|| {
             let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
-            line["start"] = json!(now.as_millis() as u64);
-        }
-        self.line(&line);
+            now.as_millis() as u64
+        });
+        self.line(&FirstLine { lrp: 1, start, rate: conditions.rate, seed: conditions.seed, files });
     }
 
+    /// The header goes before the first one, with the program's texts where that is a load.
     pub fn record(&mut self, record: &Record) {
+        if let Some(conditions) = self.conditions.take() {
+            match &record.what {
+                What::Load(load) => self.header(&conditions, &load.files),
+                _ => self.header(&conditions, &[]),
+            }
+        }
         self.line(record);
     }
 

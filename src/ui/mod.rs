@@ -1,4 +1,22 @@
-//! What a person sees: the panes of the screen and the drawings in them. Nothing below this layer knows of it.
+//! What a person sees and presses: records are folded into a picture, the picture is drawn, keys become effects.
+//! Nothing below this layer knows of it.
 
+pub mod action;
+pub mod app;
+pub mod editor;
+pub mod foreground;
+pub mod format;
 pub mod graph;
+pub mod input;
+pub mod key;
+pub mod layout;
+pub mod live;
 pub mod machine_graph;
+pub mod panes;
+pub mod pen;
+pub mod quiet;
+pub mod scope;
+pub mod terminal;
+pub mod theme;
+pub mod tree;
+pub mod view;

@@ -1,0 +1,241 @@
+//! The one table of what a person can do: the key map, the footer, the help and docs/keys.md are all made from it.
+
+use std::fmt::Write;
+
+use super::key::Key;
+use super::layout::Pane;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Action {
+    Runstop,
+    Pause,
+    Step,
+    Faster,
+    Slower,
+    Restart,
+    TransitionTo,
+    JumpTo,
+    PutAtStart,
+    EditValue,
+    Increase,
+    Decrease,
+    IncreaseMuch,
+    DecreaseMuch,
+    Into,
+    OutOf,
+    Fold,
+    Unfold,
+    OpenEditor,
+    Inspect,
+    Follow,
+    NextPane,
+    PreviousPane,
+    Focus(Pane),
+    Up,
+    Down,
+    PageUp,
+    PageDown,
+    First,
+    Last,
+    ToggleWorld,
+    Zoom,
+    Filter,
+    Back,
+    Help,
+    Quit,
+    Suspend,
+    Redraw,
+}
+
+/// Where its keys work.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Reach {
+    /// Everywhere, also in the help and while a value is typed.
+    Always,
+    /// In every pane.
+    Screen,
+    Panes(&'static [Pane]),
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Group {
+    Robot,
+    Program,
+    Values,
+    Moving,
+    Looking,
+    Lrp,
+}
+
+/// A row of the table.
+#[derive(Clone, Copy, Debug)]
+pub struct Entry {
+    pub action: Action,
+    /// For configuration: lower case with hyphens.
+    pub id: &'static str,
+    pub keys: &'static [&'static str],
+    /// For the footer; empty where it isn't shown there.
+    pub label: &'static str,
+    /// One line without a full stop.
+    pub help: &'static str,
+    pub group: Group,
+    pub reach: Reach,
+}
+
+const STATES: Reach = Reach::Panes(&[Pane::Machines, Pane::Graph, Pane::Detail]);
+const TREE: Reach = Reach::Panes(&[Pane::Machines]);
+const VALUES: Reach = Reach::Panes(&[Pane::Variables]);
+const LOG: Reach = Reach::Panes(&[Pane::Log]);
+
+macro_rules! table {
+    ($($action:expr, $id:literal, [$($key:literal),*], $label:literal, $help:literal, $group:ident, $reach:expr;)*) => {
+        /// In the order of the help; the footer shows what has a label, first what belongs to the focused pane.
+        pub const TABLE: &[Entry] = &[$(Entry {
+            action: $action, id: $id, keys: &[$($key),*], label: $label, help: $help,
+            group: Group::$group, reach: $reach,
+        },)*];
+    };
+}
+
+table! {
+    Action::Runstop, "runstop", ["!"], "STOP", "stop the robot at once", Robot, Reach::Screen;
+    Action::Runstop, "runstop-always", ["Ctrl-X"], "", "stop the robot at once, also while typing", Robot, Reach::Always;
+    Action::PutAtStart, "put-at-start", ["b"], "", "put the simulated robot back at its start", Robot, Reach::Screen;
+
+    Action::Pause, "pause", ["Space"], "pause", "pause, or run on", Program, Reach::Screen;
+    Action::Step, "step", ["s"], "step", "make one step, then pause", Program, Reach::Screen;
+    Action::Faster, "faster", ["+", "="], "", "more steps a second", Program, Reach::Screen;
+    Action::Slower, "slower", ["-"], "", "fewer steps a second", Program, Reach::Screen;
+    Action::TransitionTo, "transition-to", ["t"], "go to state", "go to the selected state as a transition would", Program, STATES;
+    Action::JumpTo, "jump-to", ["J"], "jump", "jump to the selected state: no action runs", Program, STATES;
+    Action::Restart, "restart", ["Ctrl-R"], "", "restart the program from scratch", Program, Reach::Screen;
+
+    Action::EditValue, "edit-value", ["e", "Enter"], "edit", "type a value: any Lua expression", Values, VALUES;
+    Action::Increase, "increase", ["Right", "l", ">"], "", "a little more; a boolean changes over", Values, VALUES;
+    Action::Decrease, "decrease", ["Left", "h", "<"], "nudge", "a little less; a boolean changes over", Values, VALUES;
+    Action::IncreaseMuch, "increase-much", ["Shift-Right", "L"], "", "much more", Values, VALUES;
+    Action::DecreaseMuch, "decrease-much", ["Shift-Left", "H"], "", "much less", Values, VALUES;
+
+    Action::Up, "up", ["Up", "k"], "", "the row above", Moving, Reach::Screen;
+    Action::Down, "down", ["Down", "j"], "", "the row below", Moving, Reach::Screen;
+    Action::PageUp, "page-up", ["PgUp"], "", "a page up", Moving, Reach::Screen;
+    Action::PageDown, "page-down", ["PgDn"], "", "a page down", Moving, Reach::Screen;
+    Action::First, "first", ["Home", "g"], "", "the first row; in the log the newest", Moving, Reach::Screen;
+    Action::Last, "last", ["End", "G"], "", "the last row", Moving, Reach::Screen;
+    Action::Into, "into", ["Enter"], "", "into the nested machine", Moving, STATES;
+    Action::OutOf, "out-of", ["Backspace"], "", "out to the enclosing state", Moving, STATES;
+    Action::Unfold, "unfold", ["Right", "l"], "", "show what is inside", Moving, TREE;
+    Action::Fold, "fold", ["Left", "h"], "", "hide what is inside, then go out", Moving, TREE;
+    Action::Follow, "follow", ["f"], "", "let the selection follow the innermost change, or hold it", Moving, Reach::Screen;
+
+    Action::NextPane, "next-pane", ["Tab"], "", "the next pane", Looking, Reach::Screen;
+    Action::PreviousPane, "previous-pane", ["Shift-Tab"], "", "the pane before", Looking, Reach::Screen;
+    Action::Focus(Pane::Machines), "machines", ["1"], "", "the machines", Looking, Reach::Screen;
+    Action::Focus(Pane::Graph), "graph", ["2"], "", "the drawing of the selected machine", Looking, Reach::Screen;
+    Action::Focus(Pane::Variables), "variables", ["3"], "", "the variables", Looking, Reach::Screen;
+    Action::Focus(Pane::Log), "log", ["4"], "", "the log", Looking, Reach::Screen;
+    Action::Focus(Pane::World), "world", ["5"], "", "the simulated world", Looking, Reach::Screen;
+    Action::ToggleWorld, "toggle-world", ["w"], "world", "the world in place of the drawing, and back", Looking, Reach::Screen;
+    Action::Inspect, "inspect", ["i"], "inspect", "all about what is selected: source, times, the whole message", Looking, Reach::Screen;
+    Action::Zoom, "zoom", ["z"], "", "the focused pane alone, and back", Looking, Reach::Screen;
+    Action::Filter, "filter", ["v"], "filter", "the log: everything, without transitions, warnings only", Looking, LOG;
+    Action::OpenEditor, "open-editor", ["o"], "open", "open your editor at the selected line", Looking, Reach::Screen;
+    Action::OpenEditor, "open-editor-at-log", ["Enter"], "", "open your editor at the line", Looking, LOG;
+    Action::Back, "back", ["Esc"], "", "leave: typing, help, full screen, the held log", Looking, Reach::Screen;
+
+    Action::Help, "help", ["?"], "help", "this help", Lrp, Reach::Screen;
+    Action::Quit, "quit", ["q"], "", "stop the robot and quit", Lrp, Reach::Screen;
+    Action::Quit, "quit-always", ["Ctrl-C"], "", "stop the robot and quit, also while typing", Lrp, Reach::Always;
+    Action::Suspend, "suspend", ["Ctrl-Z"], "", "stop the robot and go to the shell", Lrp, Reach::Always;
+    Action::Redraw, "redraw", ["Ctrl-L"], "", "draw the screen afresh", Lrp, Reach::Always;
+}
+
+impl Group {
+    pub const ALL: [Group; 6] =
+        [Group::Robot, Group::Program, Group::Values, Group::Moving, Group::Looking, Group::Lrp];
+
+    pub fn title(self) -> &'static str {
+        match self {
+            Group::Robot => "The robot",
+            Group::Program => "The program",
+            Group::Values => "Values (in the variables)",
+            Group::Moving => "Moving about",
+            Group::Looking => "What is on the screen",
+            Group::Lrp => "lrp",
+        }
+    }
+
+    pub fn entries(self) -> impl Iterator<Item = &'static Entry> {
+        TABLE.iter().filter(move |entry| entry.group == self)
+    }
+}
+
+impl Entry {
+    pub fn works_in(&self, pane: Pane) -> bool {
+        match self.reach {
+            Reach::Always | Reach::Screen => true,
+            Reach::Panes(panes) => panes.contains(&pane),
+        }
+    }
+
+    /// `Space`, `e, Enter`
+    pub fn keys_as_text(&self) -> String {
+        self.keys.join(", ")
+    }
+
+    fn has(&self, key: Key) -> bool {
+        self.keys.iter().any(|text| text.parse() == Ok(key))
+    }
+}
+
+/// What a key does while a pane has the focus: the pane's own meaning before the general one.
+pub fn of_key(key: Key, pane: Pane) -> Option<Action> {
+    let mut fitting = TABLE.iter().filter(|entry| entry.works_in(pane) && entry.has(key));
+    let own = fitting.clone().find(|entry| matches!(entry.reach, Reach::Panes(_)));
+    own.or_else(|| fitting.next()).map(|entry| entry.action)
+}
+
+/// What a key does everywhere, also while a value is typed.
+pub fn of_key_always(key: Key) -> Option<Action> {
+    let mut always = TABLE.iter().filter(|entry| entry.reach == Reach::Always);
+    always.find(|entry| entry.has(key)).map(|entry| entry.action)
+}
+
+/// What the footer offers while a pane has the focus, without what is always there (STOP and help).
+pub fn offered(pane: Pane) -> impl Iterator<Item = &'static Entry> {
+    let shown = move |entry: &&Entry| {
+        !entry.label.is_empty()
+            && entry.works_in(pane)
+            && !matches!(entry.action, Action::Runstop | Action::Help)
+    };
+    let own = TABLE.iter().filter(shown).filter(|entry| matches!(entry.reach, Reach::Panes(_)));
+    let general = TABLE.iter().filter(shown).filter(|entry| !matches!(entry.reach, Reach::Panes(_)));
+    let pausing = |entry: &&Entry| matches!(entry.action, Action::Pause | Action::Step);
+    let first = general.clone().filter(pausing);
+    first.chain(own).chain(general.filter(move |entry| !pausing(entry)))
+}
+
+/// The page docs/keys.md.
+pub fn page() -> String {
+    let mut page = String::from(
+        "# Keys\n\nMade from the table in `src/ui/action.rs`; a test keeps it so.\n\
+         Upper case means with Shift. `?` shows the same on the screen.\n",
+    );
+    for group in Group::ALL {
+        let _ = write!(page, "\n## {}\n\n| key | what it does | where | name |\n|---|---|---|---|\n", group.title());
+        for entry in group.entries() {
+            let keys: Vec<String> = entry.keys.iter().map(|key| format!("`{key}`")).collect();
+            let (keys, place) = (keys.join(" "), place(entry.reach));
+            let _ = writeln!(page, "| {keys} | {} | {place} | {} |", entry.help, entry.id);
+        }
+    }
+    page
+}
+
+fn place(reach: Reach) -> String {
+    match reach {
+        Reach::Always => "everywhere, also while typing".into(),
+        Reach::Screen => "every pane".into(),
+        Reach::Panes(panes) => panes.iter().map(|pane| pane.title()).collect::<Vec<_>>().join(", "),
+    }
+}

@@ -1,0 +1,70 @@
+//! The frame: status, panes, the rules between them, footer, and the help over all when asked for.
+
+use ratatui::Frame;
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+
+use super::{App, Overlay};
+use crate::ui::format;
+use crate::ui::layout::Layout;
+use crate::ui::panes::{self, footer, help, status};
+use crate::ui::pen::Pen;
+
+impl App {
+    pub fn draw(&self, frame: &mut Frame) {
+        let area = frame.area();
+        if let Some(cursor) = self.paint(area, frame.buffer_mut()) {
+            frame.set_cursor_position(cursor);
+        }
+    }
+
+    /// Where the cursor stands, when something is typed.
+    pub fn paint(&self, area: Rect, buffer: &mut Buffer) -> Option<Position> {
+        let Some(layout) = self.layout(area) else {
+            self.paint_too_small(area, buffer);
+            return None;
+        };
+        status::draw(self, layout.status, buffer);
+        match self.overlay {
+            Overlay::Help { top } => {
+                let body = Rect { y: area.y + 1, height: area.height - 2, ..area };
+                help::draw(self, top, body, buffer);
+            }
+            Overlay::Nothing | Overlay::Value(_) => self.paint_panes(&layout, buffer),
+        }
+        footer::draw(self, layout.footer, buffer)
+    }
+
+    fn paint_panes(&self, layout: &Layout, buffer: &mut Buffer) {
+        for &(pane, area) in &layout.panes {
+            panes::draw(self, pane, area, buffer);
+        }
+        for rule in &layout.rules {
+            for y in rule.top()..rule.bottom() {
+                buffer.set_string(rule.x, y, junction(layout, rule.x, y), self.theme().rule());
+            }
+        }
+    }
+
+    fn paint_too_small(&self, area: Rect, buffer: &mut Buffer) {
+        let lines = format::wrap("lrp needs 20x5; ! stops the robot", area.width);
+        for (y, line) in (0..area.height).zip(lines) {
+            Pen::new(buffer, area, y).put(&line, self.theme().normal());
+        }
+    }
+}
+
+/// A rule's glyph where titles meet it from the left, the right or both.
+fn junction(layout: &Layout, x: u16, y: u16) -> &'static str {
+    let mut titles = layout.panes.iter().map(|(_, area)| area).filter(|area| area.y == y && area.height > 0);
+    let left = titles.clone().any(|area| area.right() == x);
+    let right = titles.any(|area| area.x == x + 1);
+    let top = layout.panes.iter().all(|(_, area)| area.y >= y);
+    match (left, right) {
+        (true, true) if top => "┬",
+        (true, true) => "┼",
+        (true, false) => "┤",
+        (false, true) => "├",
+        (false, false) => "│",
+    }
+}

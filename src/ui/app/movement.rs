@@ -1,0 +1,216 @@
+//! Moving the selection of the focused pane, and keeping it in sight.
+
+use ratatui::layout::{Rect, Size};
+
+use super::{App, Overlay};
+use crate::ui::layout::{Extent, Figure, Pane};
+use crate::ui::panes::{detail, help};
+use crate::ui::tree::{self, Element};
+use crate::ui::view::{Path, owner, within};
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Move {
+    Up,
+    Down,
+    PageUp,
+    PageDown,
+    First,
+    Last,
+}
+
+impl Move {
+    /// Where it leads in a list of `length` rows, of which `page` are seen; from nowhere to the first.
+    pub fn from(self, at: Option<usize>, length: usize, page: usize) -> Option<usize> {
+        let last = length.checked_sub(1)?;
+        let page = page.max(1);
+        let Some(at) = at else { return Some(if self == Move::Last { last } else { 0 }) };
+        Some(match self {
+            Move::Up => at.saturating_sub(1),
+            Move::Down => (at + 1).min(last),
+            Move::PageUp => at.saturating_sub(page),
+            Move::PageDown => (at + page).min(last),
+            Move::First => 0,
+            Move::Last => last,
+        })
+    }
+}
+
+/// The first row to show, so that row `at` is among the `height` rows seen, moved as little as can be.
+pub fn top_for(top: usize, at: Option<usize>, length: usize, height: usize) -> usize {
+    let top = match at {
+        Some(at) if at < top => at,
+        Some(at) if at >= top + height => at + 1 - height.max(1),
+        _ => top,
+    };
+    top.min(length.saturating_sub(height))
+}
+
+impl App {
+    pub(super) fn go(&mut self, how: Move) {
+        match self.focus {
+            Pane::Machines => self.go_in_tree(how),
+            Pane::Graph => self.go_in_graph(how),
+            Pane::Variables => self.go_in_values(how),
+            Pane::Log => self.go_in_log(how),
+            Pane::Detail => self.detail_top = self.scrolled(how, self.detail_top, detail::lines(self).len()),
+            Pane::World => (),
+        }
+    }
+
+    fn go_in_tree(&mut self, how: Move) {
+        let rows = self.tree();
+        let at = rows.iter().position(|row| Some(&row.path) == self.selected.as_ref());
+        if let Some(to) = how.from(at, rows.len(), self.page(Pane::Machines)) {
+            self.select(rows[to].path.clone());
+        }
+    }
+
+    fn go_in_graph(&mut self, how: Move) {
+        let Some((program, machine)) = self.program().zip(self.machine()) else { return };
+        let states = &program[machine].states;
+        let at = states.iter().position(|&state| Some(&program[state].path) == self.selected.as_ref());
+        if let Some(to) = how.from(at, states.len(), self.page(Pane::Graph) / 2) {
+            let path = program[states[to]].path.clone();
+            self.select(path);
+        }
+    }
+
+    fn go_in_values(&mut self, how: Move) {
+        let rows: Vec<Path> = self.values().iter().filter_map(|row| row.path().cloned()).collect();
+        let at = rows.iter().position(|path| Some(path) == self.value.as_ref());
+        if let Some(to) = how.from(at, rows.len(), self.page(Pane::Variables)) {
+            self.value = Some(rows[to].clone());
+        }
+    }
+
+    /// Lines without a selection only scroll.
+    fn scrolled(&self, how: Move, top: usize, length: usize) -> usize {
+        let page = self.page(self.focus);
+        how.from(Some(top), length, page).unwrap_or(0).min(length.saturating_sub(page))
+    }
+
+    pub(super) fn go_in_help(&mut self, how: Move) {
+        let page = usize::from(self.options.size.height.saturating_sub(2));
+        let length = help::lines(self.options.size.width).len();
+        if let Overlay::Help { top } = &mut self.overlay {
+            *top = how.from(Some(*top), length, page).unwrap_or(0).min(length.saturating_sub(page));
+        }
+    }
+
+    /// Selects a machine or state and unfolds what hides it.
+    pub(super) fn select(&mut self, path: Path) {
+        self.folded.retain(|folded| !within(&path, folded) || *folded == path);
+        self.selected = Some(path);
+        self.detail_top = 0;
+    }
+
+    pub(super) fn go_into(&mut self) {
+        let Some((program, selected)) = self.program().zip(self.selected.clone()) else {
+            return self.nothing_selected();
+        };
+        let inner = match tree::element(program, &selected) {
+            Some(Element::Machine(machine)) => {
+                let active = self.view.active(&selected).cloned();
+                active.or_else(|| program[machine].states.first().map(|&state| program[state].path.clone()))
+            }
+            Some(Element::State(state)) => {
+                program[state].machines.first().map(|&machine| program[machine].path.clone())
+            }
+            None => None,
+        };
+        match inner {
+            Some(path) => self.select(path),
+            None => self.message = Some(format!("{selected} has nothing inside")),
+        }
+    }
+
+    pub(super) fn go_out(&mut self) {
+        let Some(selected) = self.selected.clone() else { return self.nothing_selected() };
+        match owner(&selected) {
+            Some(outer) => self.select(outer.into()),
+            None => self.message = Some(format!("{selected} is outermost")),
+        }
+    }
+
+    pub(super) fn fold(&mut self) {
+        let Some(selected) = self.selected.clone() else { return self.nothing_selected() };
+        let rows = self.tree();
+        let open = rows.iter().any(|row| row.path != selected && within(&row.path, &selected));
+        if open {
+            self.folded.insert(selected);
+        } else if let Some(outer) = owner(&selected) {
+            self.select(outer.into());
+        }
+    }
+
+    pub(super) fn unfold(&mut self) {
+        let Some(selected) = self.selected.clone() else { return self.nothing_selected() };
+        if !self.folded.remove(&selected) {
+            let rows = self.tree();
+            let inner = rows.iter().find(|row| row.path != selected && within(&row.path, &selected));
+            if let Some(path) = inner.map(|row| row.path.clone()) {
+                self.select(path);
+            }
+        }
+    }
+
+    pub(super) fn nothing_selected(&mut self) {
+        self.message = Some("nothing is selected".into());
+    }
+
+    pub(super) fn focus_on(&mut self, pane: Pane) {
+        if let Some(figure) = Figure::of(pane) {
+            self.figure = figure;
+        }
+        if !matches!(pane, Pane::Detail | Pane::World) {
+            self.subject = pane;
+            self.detail_top = 0;
+        }
+        self.focus = pane;
+    }
+
+    /// The panes a person can go through with Tab: those seen, and where there is no place for it the graph.
+    pub(super) fn next_pane(&mut self, step: isize) {
+        const ROUND: [Pane; 6] =
+            [Pane::Machines, Pane::Graph, Pane::World, Pane::Detail, Pane::Variables, Pane::Log];
+        let seen = self.seen();
+        let round: Vec<Pane> = ROUND.into_iter().filter(|pane| seen.contains(pane) || *pane == self.focus).collect();
+        let at = round.iter().position(|&pane| pane == self.focus).unwrap_or(0) as isize;
+        let next = (at + step).rem_euclid(round.len().max(1) as isize) as usize;
+        if let Some(&pane) = round.get(next) {
+            self.focus_on(pane);
+        }
+    }
+
+    /// Every pane that has a place when nothing is asked for in particular.
+    fn seen(&self) -> Vec<Pane> {
+        let every = [Pane::Machines, self.figure.pane(), Pane::Variables, Pane::Log];
+        let shared = match self.extent {
+            Extent::Alone => None,
+            Extent::Shared => self.layout(self.area()),
+        };
+        let shown = shared.iter().flat_map(|layout| layout.panes.iter().map(|&(pane, _)| pane));
+        shown.chain(every).collect()
+    }
+
+    /// Rows a pane has for its list.
+    pub(super) fn page(&self, pane: Pane) -> usize {
+        let area = self.layout(self.area()).and_then(|layout| layout.area(pane));
+        area.map_or(1, |area| usize::from(area.height.saturating_sub(1)))
+    }
+
+    fn area(&self) -> Rect {
+        let Size { width, height } = self.options.size;
+        Rect::new(0, 0, width, height)
+    }
+
+    /// After anything that may have moved a selection: brings it into sight.
+    pub(super) fn settle(&mut self) {
+        let rows = self.tree();
+        let at = rows.iter().position(|row| Some(&row.path) == self.selected.as_ref());
+        self.tree_top = top_for(self.tree_top, at, rows.len(), self.page(Pane::Machines));
+        let rows = self.values();
+        let at = rows.iter().position(|row| row.path().is_some() && row.path() == self.value.as_ref());
+        self.values_top = top_for(self.values_top, at, rows.len(), self.page(Pane::Variables));
+    }
+}

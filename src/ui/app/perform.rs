@@ -1,0 +1,200 @@
+//! What each action does: to the screen itself, or as an effect outside.
+
+use super::movement::Move;
+use super::values::Nudge;
+use super::{App, Effect, LogRow, Overlay};
+use crate::runtime::command::Command;
+use crate::syntax::Span;
+use crate::ui::action::{self, Action};
+use crate::ui::key::Key;
+use crate::ui::layout::{Extent, Figure, Pane};
+use crate::ui::tree::{self, Element};
+use crate::ui::view::{Mode, Path};
+
+/// What + and - go through, steps a second; above them is as fast as possible.
+const RATES: [f64; 13] = [0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0, 500.0, 1000.0];
+
+impl App {
+    pub(super) fn perform(&mut self, action: Action) -> Vec<Effect> {
+        match action {
+            Action::Runstop => return command(Command::Runstop),
+            Action::Pause => return command(self.pause_or_run()),
+            Action::Step => return self.step(),
+            Action::Faster => return command(Command::Rate { hz: faster(self.view.rate) }),
+            Action::Slower => return command(Command::Rate { hz: slower(self.view.rate) }),
+            Action::Restart => return command(Command::Restart),
+            Action::TransitionTo => return self.send_to(|state| Command::TransitionTo { state }),
+            Action::JumpTo => return self.send_to(|state| Command::JumpTo { state }),
+            Action::PutAtStart => return self.put_at_start(),
+            Action::EditValue => return self.begin_typing(),
+            Action::Increase => return self.nudge(Nudge::Up),
+            Action::Decrease => return self.nudge(Nudge::Down),
+            Action::IncreaseMuch => return self.nudge(Nudge::FarUp),
+            Action::DecreaseMuch => return self.nudge(Nudge::FarDown),
+            Action::OpenEditor => return self.open_editor(),
+            Action::Quit => return vec![Effect::Quit],
+            Action::Suspend => return vec![Effect::Suspend],
+            Action::Redraw => return vec![Effect::Redraw],
+            Action::Into => self.go_into(),
+            Action::OutOf => self.go_out(),
+            Action::Fold => self.fold(),
+            Action::Unfold => self.unfold(),
+            Action::Follow => self.toggle_follow(),
+            Action::NextPane => self.next_pane(1),
+            Action::PreviousPane => self.next_pane(-1),
+            Action::Focus(pane) => self.focus_on(pane),
+            Action::Up => self.go(Move::Up),
+            Action::Down => self.go(Move::Down),
+            Action::PageUp => self.go(Move::PageUp),
+            Action::PageDown => self.go(Move::PageDown),
+            Action::First => self.go(Move::First),
+            Action::Last => self.go(Move::Last),
+            Action::ToggleWorld => self.toggle(Figure::World),
+            Action::Inspect => self.toggle(Figure::Detail),
+            Action::Zoom => self.zoom(),
+            Action::Filter => self.reading.filter = self.reading.filter.next(),
+            Action::Back => self.back(),
+            Action::Help => self.overlay = Overlay::Help { top: 0 },
+        }
+        Vec::new()
+    }
+
+    pub(super) fn key_in_help(&mut self, key: Key) -> Vec<Effect> {
+        match action::of_key(key, Pane::World) {
+            Some(Action::Runstop) => return command(Command::Runstop),
+            Some(Action::Up) => self.go_in_help(Move::Up),
+            Some(Action::Down) => self.go_in_help(Move::Down),
+            Some(Action::PageUp) => self.go_in_help(Move::PageUp),
+            Some(Action::PageDown) => self.go_in_help(Move::PageDown),
+            Some(Action::First) => self.go_in_help(Move::First),
+            Some(Action::Last) => self.go_in_help(Move::Last),
+            _ => self.overlay = Overlay::Nothing,
+        }
+        Vec::new()
+    }
+
+    fn pause_or_run(&self) -> Command {
+        match self.view.mode {
+            Mode::Running if !self.halted => Command::Pause,
+            _ => Command::Resume,
+        }
+    }
+
+    fn step(&mut self) -> Vec<Effect> {
+        match self.view.mode {
+            Mode::Running => vec![Effect::Command(Command::Pause)],
+            Mode::Paused { .. } | Mode::Stopped => vec![Effect::Command(Command::Step)],
+        }
+    }
+
+    fn send_to(&mut self, to: impl Fn(String) -> Command) -> Vec<Effect> {
+        match self.selected_element() {
+            Some((path, Element::State(_))) => command(to(path.to_string())),
+            Some((path, Element::Machine(_))) => self.say(format!("{path} is a machine; select one of its states")),
+            None => self.say("no state is selected"),
+        }
+    }
+
+    fn put_at_start(&mut self) -> Vec<Effect> {
+        match &self.view.world {
+            Some(world) => command(Command::PutAtStart { bridge: world.bridge.to_string() }),
+            None => self.say("there is no simulated robot to put back"),
+        }
+    }
+
+    fn selected_element(&self) -> Option<(Path, Element)> {
+        let path = self.selected.clone()?;
+        let element = tree::element(self.program()?, &path)?;
+        Some((path, element))
+    }
+
+    fn toggle(&mut self, figure: Figure) {
+        let next = if self.focus == figure.pane() || (self.figure == figure && Figure::of(self.focus).is_none()) {
+            Figure::Graph
+        } else {
+            figure
+        };
+        self.figure = next;
+        let has_place = self.extent == Extent::Shared && self.page(next.pane()) > 1;
+        if Figure::of(self.focus).is_some() || !has_place {
+            self.focus_on(next.pane());
+        }
+    }
+
+    fn zoom(&mut self) {
+        self.extent = match self.extent {
+            Extent::Shared => Extent::Alone,
+            Extent::Alone => Extent::Shared,
+        };
+    }
+
+    fn back(&mut self) {
+        if self.extent == Extent::Alone {
+            self.extent = Extent::Shared;
+        } else if self.reading.place.is_some() && self.focus == Pane::Log {
+            self.read_newest();
+        } else if self.focus == Pane::Detail {
+            self.figure = Figure::Graph;
+            self.focus_on(self.subject);
+        } else if self.figure == Figure::Detail {
+            self.figure = Figure::Graph;
+        }
+    }
+
+    fn open_editor(&mut self) -> Vec<Effect> {
+        let place = match self.subject {
+            Pane::Variables => self.place_of_value(),
+            Pane::Log => self.place_of_log(),
+            _ => self.place_of_element(),
+        };
+        match place {
+            Some((file, line, column)) => vec![Effect::OpenEditor { file, line, column }],
+            None => self.say("what is selected has no line in a file"),
+        }
+    }
+
+    fn place_of_element(&self) -> Option<(Path, usize, usize)> {
+        let program = self.program()?;
+        let (_, element) = self.selected_element()?;
+        self.place(match element {
+            Element::Machine(machine) => program[machine].name_span,
+            Element::State(state) => program[state].name_span,
+        })
+    }
+
+    fn place_of_value(&self) -> Option<(Path, usize, usize)> {
+        let program = self.program()?;
+        self.place(program[program.var(self.value.as_ref()?)?].name_span)
+    }
+
+    fn place_of_log(&self) -> Option<(Path, usize, usize)> {
+        match self.reading.place.as_ref()? {
+            LogRow::Problem(key) => (key.line > 0).then(|| (key.file.clone(), key.line, key.column.max(1))),
+            LogRow::Entry(number) => {
+                let (file, line) = self.view.journal.get(*number)?.place.clone()?;
+                Some((file, line, 1))
+            }
+        }
+    }
+
+    fn place(&self, span: Span) -> Option<(Path, usize, usize)> {
+        let source = self.program()?.sources.get(usize::from(span.file.0))?;
+        let position = source.position(span.start as usize);
+        Some((source.name.clone(), position.line, position.column))
+    }
+}
+
+fn command(command: Command) -> Vec<Effect> {
+    vec![Effect::Command(command)]
+}
+
+fn faster(rate: f64) -> f64 {
+    let above = RATES.into_iter().find(|&step| step > rate * 1.001);
+    if rate == 0.0 { 0.0 } else { above.unwrap_or(0.0) }
+}
+
+fn slower(rate: f64) -> f64 {
+    let last = RATES[RATES.len() - 1];
+    let below = RATES.into_iter().rev().find(|&step| step < rate * 0.999);
+    if rate == 0.0 { last } else { below.unwrap_or(RATES[0]) }
+}

@@ -1,0 +1,49 @@
+//! Typing a value for a variable: one line at the bottom, so that nothing is covered.
+
+use crossterm::event::{Event as TerminalEvent, KeyCode, KeyEvent};
+use tui_input::Input;
+use tui_input::backend::crossterm::EventHandler;
+
+use super::{App, Effect, Overlay};
+use crate::runtime::command::Command;
+use crate::ui::format;
+use crate::ui::view::Path;
+
+#[derive(Clone, Debug)]
+pub struct Typing {
+    /// The variable.
+    pub var: Path,
+    pub input: Input,
+}
+
+impl App {
+    pub(super) fn begin_typing(&mut self) -> Vec<Effect> {
+        let Some(var) = self.settable() else { return Vec::new() };
+        let value = self.view.variables.get(&var).and_then(|variable| variable.value.as_ref());
+        let text = value.and_then(format::source).unwrap_or_default();
+        self.overlay = Overlay::Value(Typing { var, input: Input::new(text) });
+        Vec::new()
+    }
+
+    pub(super) fn type_value(&mut self, event: KeyEvent) -> Vec<Effect> {
+        let Overlay::Value(typing) = &mut self.overlay else { return Vec::new() };
+        match event.code {
+            KeyCode::Esc => self.overlay = Overlay::Nothing,
+            KeyCode::Enter => return self.finish_typing(),
+            _ => {
+                typing.input.handle_event(&TerminalEvent::Key(event));
+            }
+        }
+        Vec::new()
+    }
+
+    fn finish_typing(&mut self) -> Vec<Effect> {
+        let Overlay::Value(typing) = &self.overlay else { return Vec::new() };
+        let (var, value) = (typing.var.to_string(), typing.input.value().trim().to_owned());
+        if value.is_empty() {
+            return self.say("a value is a Lua expression, as in 128 or {x = 1}; Esc leaves");
+        }
+        self.overlay = Overlay::Nothing;
+        vec![Effect::Command(Command::Set { var, value })]
+    }
+}

@@ -1,0 +1,97 @@
+//! Nudging a variable's value: numbers by a tenth in round steps, booleans over and back.
+
+use serde_json::{Number, Value};
+
+use super::{App, Effect};
+use crate::runtime::command::Command;
+use crate::ui::format;
+use crate::ui::view::Path;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Nudge {
+    Up,
+    Down,
+    FarUp,
+    FarDown,
+}
+
+impl App {
+    /// The selected variable, or a sentence why it can't be set.
+    pub(super) fn settable(&mut self) -> Option<Path> {
+        let Some(path) = self.value.clone() else {
+            self.message = Some("no variable is selected; Down selects the first".into());
+            return None;
+        };
+        let known = self.program().is_some_and(|program| program.var(&path).is_some());
+        if !known {
+            self.message = Some(format!("{path} comes from the robot and can't be set here"));
+            return None;
+        }
+        if self.view.variables.get(&path).is_none_or(|variable| variable.value.is_none()) {
+            self.message = Some(format!("{path} has no value: its machine isn't running"));
+            return None;
+        }
+        Some(path)
+    }
+
+    pub(super) fn nudge(&mut self, nudge: Nudge) -> Vec<Effect> {
+        let Some(path) = self.settable() else { return Vec::new() };
+        let on_its_way = self.nudged.as_ref().filter(|(nudged, _)| *nudged == path).map(|(_, value)| value);
+        let variable = self.view.variables.get(&path).and_then(|variable| variable.value.as_ref());
+        let Some(next) = on_its_way.or(variable).and_then(|value| nudged(value, nudge)) else {
+            return self.say(format!("{path} is neither a number nor a boolean; e types a value"));
+        };
+        let Some(value) = format::source(&next) else { return Vec::new() };
+        self.nudged = Some((path.clone(), next));
+        vec![Effect::Command(Command::Set { var: path.to_string(), value })]
+    }
+}
+
+fn nudged(value: &Value, nudge: Nudge) -> Option<Value> {
+    match value {
+        Value::Bool(yes) => Some(Value::Bool(!yes)),
+        Value::Number(number) => nudged_number(number, nudge),
+        _ => None,
+    }
+}
+
+fn nudged_number(number: &Number, nudge: Nudge) -> Option<Value> {
+    if let Some(whole) = number.as_i64() {
+        let step = step(whole as f64, nudge).max(1.0) as i64;
+        let next = if is_up(nudge) { whole.checked_add(step)? } else { whole.checked_sub(step)? };
+        return Some(next.into());
+    }
+    let n = number.as_f64()?;
+    let step = step(n, nudge);
+    let raw = if is_up(nudge) { n + step } else { n - step };
+    Number::from_f64(tidy(raw, step)).map(Value::Number)
+}
+
+fn is_up(nudge: Nudge) -> bool {
+    matches!(nudge, Nudge::Up | Nudge::FarUp)
+}
+
+/// 1, 2 or 5 times a power of ten, about a tenth of the number; ten times that when far. From zero: 0.1.
+fn step(n: f64, nudge: Nudge) -> f64 {
+    let near = if n == 0.0 { 0.1 } else { round_step(n.abs() / 10.0) };
+    match nudge {
+        Nudge::Up | Nudge::Down => near,
+        Nudge::FarUp | Nudge::FarDown => near * 10.0,
+    }
+}
+
+/// The largest of 1, 2, 5 times a power of ten that is not above `n`.
+fn round_step(n: f64) -> f64 {
+    let power = 10f64.powi((n.log10() + 1e-9).floor() as i32);
+    match n / power + 1e-9 {
+        part if part >= 5.0 => 5.0 * power,
+        part if part >= 2.0 => 2.0 * power,
+        _ => power,
+    }
+}
+
+/// Without the last digits that adding binary fractions leaves: `0.30000000000000004` is 0.3.
+fn tidy(n: f64, step: f64) -> f64 {
+    let decimals = (2.0 - step.log10().floor()).clamp(0.0, 300.0) as usize;
+    format!("{n:.decimals$}").parse().unwrap_or(n)
+}

@@ -1,0 +1,202 @@
+//! Numbers, times and values in the few columns there are. Knows nothing of where they are shown.
+
+use serde_json::Value;
+use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
+
+use super::view::Timeout;
+use crate::runtime::time::Time;
+
+/// Columns a text takes.
+pub fn width(text: &str) -> u16 {
+    text.width().min(u16::MAX as usize) as u16
+}
+
+/// A text in at most `room` columns on one line; what is left out shows as an ellipsis.
+pub fn fit(text: &str, room: u16) -> String {
+    let one_line: String = text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect();
+    if width(&one_line) <= room {
+        return one_line;
+    }
+    let mut short = String::new();
+    let mut taken = 1;
+    for c in one_line.chars() {
+        taken += c.width().unwrap_or(0) as u16;
+        if taken > room {
+            break;
+        }
+        short.push(c);
+    }
+    if room > 0 {
+        short.push('…');
+    }
+    short
+}
+
+/// A text in lines of at most `room` columns, broken between words where it can be.
+pub fn wrap(text: &str, room: u16) -> Vec<String> {
+    let mut lines = Vec::new();
+    for paragraph in text.lines() {
+        let mut line = String::new();
+        for word in paragraph.split_whitespace() {
+            if !line.is_empty() && width(&line) + 1 + width(word) > room {
+                lines.push(std::mem::take(&mut line));
+            }
+            if !line.is_empty() {
+                line.push(' ');
+            }
+            line.push_str(word);
+        }
+        lines.push(line);
+    }
+    lines
+}
+
+/// How long: `120 ms`, `4.3 s`, `2:04`, `1:02:04`.
+pub fn duration(ms: f64) -> String {
+    match ms {
+        ms if ms < 999.5 => format!("{} ms", ms.max(0.0).round()),
+        ms if ms < 59_950.0 => format!("{:.1} s", ms / 1000.0),
+        ms => clock_of((ms / 1000.0).min(1e15) as u64),
+    }
+}
+
+/// Program time: `0:02.9`, `1:02:03.9`.
+pub fn clock(t: Time) -> String {
+    let tenths = t.0 / 100_000;
+    format!("{}.{}", clock_of(tenths / 10), tenths % 10)
+}
+
+fn clock_of(seconds: u64) -> String {
+    let (hours, minutes, seconds) = (seconds / 3600, seconds / 60 % 60, seconds % 60);
+    match hours {
+        0 => format!("{minutes}:{seconds:02}"),
+        _ => format!("{hours}:{minutes:02}:{seconds:02}"),
+    }
+}
+
+/// Steps a second.
+pub fn rate(hz: f64) -> String {
+    if hz == 0.0 { "max".into() } else { format!("{} Hz", number(hz)) }
+}
+
+/// At most six significant digits, no needless zeros.
+pub fn number(n: f64) -> String {
+    if n == 0.0 {
+        return "0".into();
+    }
+    if !n.is_finite() {
+        return if n.is_nan() { "nan".into() } else if n > 0.0 { "inf".into() } else { "-inf".into() };
+    }
+    let magnitude = n.abs().log10().floor() as i32;
+    if !(-5..9).contains(&magnitude) {
+        return format!("{n:.3e}");
+    }
+    let decimals = (5 - magnitude).clamp(0, 6) as usize;
+    let text = format!("{n:.decimals$}");
+    match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.').into(),
+        false => text,
+    }
+}
+
+/// A value as Lua would write it, with numbers shortened for reading.
+pub fn value(value: &Value) -> String {
+    lua(value, &|n| n.as_f64().filter(|_| n.is_f64()).map_or_else(|| n.to_string(), number))
+}
+
+/// A value as Lua text that gives the same value; none for what has no such text: functions, devices, cut tables.
+pub fn source(value: &Value) -> Option<String> {
+    is_whole(value).then(|| lua(value, &|n| n.to_string()))
+}
+
+fn is_whole(value: &Value) -> bool {
+    match value {
+        Value::Array(items) => items.iter().all(is_whole),
+        Value::Object(fields) if marker(value).is_some() => fields.is_empty(),
+        Value::Object(fields) => fields.values().all(is_whole),
+        _ => true,
+    }
+}
+
+/// What stands for a value that JSON has no form for.
+fn marker(value: &Value) -> Option<String> {
+    let fields = value.as_object().filter(|fields| fields.len() == 1)?;
+    if let Some(what) = fields.get("lua").and_then(Value::as_str) {
+        return Some(what.into());
+    }
+    fields.get("cut").map(|_| "{…}".into())
+}
+
+fn lua(value: &Value, number: &dyn Fn(&serde_json::Number) -> String) -> String {
+    if let Some(mark) = marker(value) {
+        return mark;
+    }
+    match value {
+        Value::Null => "nil".into(),
+        Value::Bool(yes) => yes.to_string(),
+        Value::Number(n) => number(n),
+        Value::String(text) => quoted(text),
+        Value::Array(items) => {
+            let items: Vec<String> = items.iter().map(|item| lua(item, number)).collect();
+            format!("{{{}}}", items.join(", "))
+        }
+        Value::Object(fields) => {
+            let fields: Vec<String> =
+                fields.iter().map(|(key, item)| format!("{} = {}", field(key), lua(item, number))).collect();
+            format!("{{{}}}", fields.join(", "))
+        }
+    }
+}
+
+/// Records carry what JSON has no number for as these strings.
+fn quoted(text: &str) -> String {
+    match text {
+        "nan" => "0/0".into(),
+        "inf" => "math.huge".into(),
+        "-inf" => "-math.huge".into(),
+        _ => format!("{text:?}"),
+    }
+}
+
+fn field(key: &str) -> String {
+    let named = key.chars().enumerate().all(|(i, c)| c == '_' || c.is_ascii_alphabetic() || (i > 0 && c.is_ascii_digit()));
+    if named && !key.is_empty() { key.into() } else { format!("[{key:?}]") }
+}
+
+/// A message's fields without those that are zero, false or empty: what is said, not what is left out.
+pub fn telling(message: &Value) -> Value {
+    match message {
+        Value::Object(fields) => {
+            let kept = fields.iter().map(|(key, item)| (key.clone(), telling(item)));
+            Value::Object(kept.filter(|(_, item)| !is_silent(item)).collect())
+        }
+        other => other.clone(),
+    }
+}
+
+fn is_silent(value: &Value) -> bool {
+    match value {
+        Value::Null | Value::Bool(false) => true,
+        Value::Number(n) => n.as_f64() == Some(0.0),
+        Value::String(text) => text.is_empty(),
+        Value::Object(fields) => fields.is_empty(),
+        _ => false,
+    }
+}
+
+/// The latest numbers as bars of eight heights, the newest at the right.
+pub fn sparkline(history: &[f64], columns: u16) -> String {
+    const BARS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
+    let shown = &history[history.len().saturating_sub(columns as usize)..];
+    let low = shown.iter().copied().fold(f64::INFINITY, f64::min);
+    let high = shown.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+    let height = |n: f64| if high > low { ((n - low) / (high - low) * 7.0).round() as usize } else { 0 };
+    shown.iter().map(|&n| BARS[height(n).min(7)]).collect()
+}
+
+/// How much of a timeout is over.
+pub fn bar(timeout: Timeout, columns: u16) -> String {
+    let full = (timeout.part() * f64::from(columns)).round() as usize;
+    let columns = columns as usize;
+    "▮".repeat(full.min(columns)) + &"▯".repeat(columns - full.min(columns))
+}

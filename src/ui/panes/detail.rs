@@ -1,0 +1,298 @@
+//! All about what is selected: a state with its actions and transitions, a variable with its history, a problem with its line.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::style::Style;
+
+use super::diagram::label;
+use super::{Title, draw_nothing};
+use crate::model::{BlockId, Entry, MachineId, Program, Sources, StateId, TransitionKind};
+use crate::syntax::{Source, Span};
+use crate::ui::app::{App, LogRow};
+use crate::ui::format;
+use crate::ui::layout::Pane;
+use crate::ui::pen::Pen;
+use crate::ui::tree::{self, Element};
+use crate::ui::view::{Gravity, Problem, name};
+
+/// Words at the left, words at the right, and what they are.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Line {
+    pub text: String,
+    pub place: String,
+    pub tone: Tone,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Tone {
+    Heading,
+    Text,
+    Aside,
+    Code,
+    Gravity(Gravity),
+}
+
+pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
+    let lines = lines(app);
+    if lines.is_empty() {
+        draw_nothing(app, area, buffer, "Select a state, a variable or a line of the log: here is all about it.");
+    }
+    let top = app.detail_top().min(lines.len().saturating_sub(usize::from(area.height)));
+    for (y, line) in (0..area.height).zip(&lines[top..]) {
+        let style = style(app, line.tone);
+        let mut pen = Pen::new(buffer, area, y);
+        let indent = if matches!(line.tone, Tone::Heading | Tone::Gravity(_)) { " " } else { "   " };
+        pen.put_right(" ", style).put_right(&line.place, app.theme().dim());
+        pen.put(indent, Style::new()).put(&line.text, style);
+    }
+    let below = lines.len().saturating_sub(top + usize::from(area.height));
+    let note = if below > 0 { format!("{below} more") } else { String::new() };
+    Title::new(Pane::Detail.title(), note)
+}
+
+fn style(app: &App, tone: Tone) -> Style {
+    let theme = app.theme();
+    match tone {
+        Tone::Heading => theme.bold(),
+        Tone::Text | Tone::Code => theme.normal(),
+        Tone::Aside => theme.dim(),
+        Tone::Gravity(gravity) => theme.gravity(gravity),
+    }
+}
+
+pub fn lines(app: &App) -> Vec<Line> {
+    let mut page = Page { app, lines: Vec::new() };
+    match app.subject() {
+        Pane::Variables => page.variable(),
+        Pane::Log => page.log_row(),
+        _ => page.element(),
+    }
+    page.lines
+}
+
+struct Page<'a> {
+    app: &'a App,
+    lines: Vec<Line>,
+}
+
+impl Page<'_> {
+    fn add(&mut self, tone: Tone, text: impl Into<String>) {
+        self.add_at(tone, text, String::new());
+    }
+
+    fn add_at(&mut self, tone: Tone, text: impl Into<String>, place: String) {
+        self.lines.push(Line { text: text.into(), place, tone });
+    }
+
+    fn element(&mut self) {
+        let Some((program, path)) = self.app.program().zip(self.app.selected()) else { return };
+        match tree::element(program, path) {
+            Some(Element::Machine(machine)) => self.machine(program, machine),
+            Some(Element::State(state)) => self.state(program, state),
+            None => (),
+        }
+        for problem in self.app.view().problems.iter().filter(|problem| problem.concerns(path)) {
+            self.add_at(Tone::Gravity(problem.gravity), &problem.message, line_of(problem));
+        }
+    }
+
+    fn machine(&mut self, program: &Program, id: MachineId) {
+        let machine = &program[id];
+        self.add_at(Tone::Heading, format!("machine {}", machine.name), place(program, machine.name_span));
+        let view = self.app.view();
+        match view.machines.get(&machine.path).filter(|machine| machine.running) {
+            None => self.add(Tone::Text, "not running"),
+            Some(running) => {
+                let by = running.spawned_by.as_ref().map_or("at top level".into(), |by| format!("by {}", name(by)));
+                self.add(Tone::Text, format!("running, spawned {by}"));
+                let active = running.active.as_ref().map_or("no state", |state| name(state));
+                self.add(Tone::Text, format!("in {active} since {}", format::clock(running.entered)));
+            }
+        }
+        self.add(Tone::Heading, "events");
+        for &event in &machine.events {
+            let event = &program[event];
+            self.add_at(Tone::Code, event.name.to_string(), place(program, event.span));
+            self.code(program, event.block);
+        }
+    }
+
+    fn state(&mut self, program: &Program, id: StateId) {
+        let state = &program[id];
+        self.add_at(Tone::Heading, format!("state {}", state.name), place(program, state.name_span));
+        self.times(program, id);
+        for entry in &state.onentry {
+            match entry {
+                Entry::Action(block) => self.action(program, "onentry", *block),
+                Entry::Spawn(spawn) => {
+                    let text = format!("onentry spawns {} in {}", spawn.machine_name, spawn.state_name);
+                    self.add_at(Tone::Heading, text, place(program, spawn.span));
+                }
+            }
+        }
+        state.running.iter().for_each(|&block| self.action(program, "running", block));
+        state.onexit.iter().for_each(|&block| self.action(program, "onexit", block));
+        if !state.outgoing.is_empty() || !state.exits.is_empty() {
+            self.add(Tone::Heading, "ways out");
+        }
+        for &id in state.outgoing.iter().chain(&state.exits) {
+            let transition = &program[id];
+            let form = match (transition.kind, &transition.sources) {
+                (_, Sources::Any) => "*",
+                (TransitionKind::On, _) => "on",
+                (TransitionKind::Eps, _) => "eps",
+                (TransitionKind::Ontime, _) => "ontime",
+                (TransitionKind::Exit, _) => "exit",
+            };
+            let text = format!("{form} {} → {}", label(program, transition), transition.target_name);
+            self.add_at(Tone::Code, text, place(program, transition.span));
+        }
+    }
+
+    fn times(&mut self, program: &Program, id: StateId) {
+        let (view, state) = (self.app.view(), &program[id]);
+        let seen = view.states.get(&state.path);
+        let visits = seen.map_or(0, |state| state.visits);
+        let left = seen.and_then(|state| state.last_left).map(format::clock);
+        let now = if view.is_active(&state.path) {
+            let elapsed = view.elapsed(&program[state.machine].path).map_or(0.0, |elapsed| elapsed.ms());
+            format!("active for {}", format::duration(elapsed))
+        } else {
+            left.map_or("never left".into(), |left| format!("left at {left}"))
+        };
+        let text = match visits {
+            0 => "not entered yet".into(),
+            1 => format!("entered once, {now}"),
+            n => format!("entered {n} times, {now}"),
+        };
+        self.add(Tone::Text, text);
+    }
+
+    fn action(&mut self, program: &Program, kind: &str, block: BlockId) {
+        self.add_at(Tone::Heading, kind, place(program, program[block].span));
+        self.code(program, block);
+    }
+
+    fn code(&mut self, program: &Program, block: BlockId) {
+        for line in dedented(&program[block].code) {
+            self.add(Tone::Code, line);
+        }
+    }
+
+    fn variable(&mut self) {
+        let Some(path) = self.app.selected_value() else { return };
+        let app = self.app;
+        let declared = app.program().and_then(|program| Some((program, program.var(path)?)));
+        match declared {
+            Some((program, id)) => {
+                let var = &program[id];
+                self.add_at(Tone::Heading, format!("variable {}", var.path), place(program, var.name_span));
+                self.add(Tone::Aside, format!("begins with {}", program[var.init].code.trim()));
+            }
+            None => self.add(Tone::Heading, path.to_string()),
+        }
+        match app.view().variables.get(path) {
+            Some(variable) => {
+                let value = variable.value.as_ref().map_or("no value: its machine isn't running".into(), format::value);
+                self.add(Tone::Text, value);
+                if let Some(previous) = &variable.previous {
+                    let text = format!("was {}", format::value(previous));
+                    self.add(Tone::Aside, text);
+                }
+                self.add(Tone::Aside, format!("set at {} by {}", format::clock(variable.changed), variable.by));
+                let history: Vec<f64> = variable.history.iter().copied().collect();
+                self.add(Tone::Text, format::sparkline(&history, 32));
+            }
+            None => self.field(path),
+        }
+    }
+
+    fn field(&mut self, path: &str) {
+        for row in self.app.values() {
+            if let crate::ui::scope::Row::Field { path: other, value, at, .. } = row
+                && *other == *path
+            {
+                self.add(Tone::Text, format::value(&value));
+                self.add(Tone::Aside, format!("came at {}", format::clock(at)));
+            }
+        }
+    }
+
+    fn log_row(&mut self) {
+        let app = self.app;
+        match &app.reading().place {
+            None => (),
+            Some(LogRow::Problem(key)) => {
+                let problem = app.view().problems.iter().find(|problem| problem.key == *key);
+                problem.into_iter().for_each(|problem| self.problem(problem));
+            }
+            Some(LogRow::Entry(number)) => {
+                let Some(entry) = app.view().journal.get(*number) else { return };
+                let place = entry.place.as_ref().map_or(String::new(), |(file, line)| format!("{file}:{line}"));
+                self.add_at(Tone::Heading, format::clock(entry.t), place);
+                entry.text.lines().for_each(|line| self.add(Tone::Text, line));
+                if !entry.state.is_empty() {
+                    self.add(Tone::Aside, format!("in {}", entry.state));
+                }
+            }
+        }
+    }
+
+    fn problem(&mut self, problem: &Problem) {
+        let word = match problem.gravity {
+            Gravity::Error => "error",
+            Gravity::Warning => "warning",
+            Gravity::Hint => "hint",
+        };
+        let key = &problem.key;
+        let heading = format!("{word}[{}]", key.code);
+        self.add_at(Tone::Gravity(problem.gravity), heading, format!("{}:{}:{}", key.file, key.line, key.column));
+        format::wrap(&problem.message, 60).into_iter().for_each(|line| self.add(Tone::Text, line));
+        self.source_line(problem);
+        if let Some(help) = &problem.help {
+            format::wrap(&format!("help: {help}"), 60).into_iter().for_each(|line| self.add(Tone::Text, line));
+        }
+        if problem.count > 0 {
+            let times = if problem.count == 1 { "once".into() } else { format!("{} times", problem.count) };
+            let inside = if problem.state.is_empty() { String::new() } else { format!(" in {}", problem.state) };
+            self.add(Tone::Aside, format!("{times}{inside}, last at {}", format::clock(problem.last)));
+        }
+    }
+
+    /// The line it is about with a caret below; not for texts that weren't taken over, which aren't at hand.
+    fn source_line(&mut self, problem: &Problem) {
+        let Some(program) = self.app.program() else { return };
+        let key = &problem.key;
+        let source: Option<&Source> = program.sources.iter().find(|source| source.name == key.file);
+        let Some(source) = source.filter(|_| !problem.is_of_rejected_text()) else { return };
+        let text = source.text[source.line_range(key.line)].replace('\t', " ");
+        let number = key.line.to_string();
+        self.add(Tone::Code, format!("{number} │ {text}"));
+        let before: String = text.chars().take(key.column.saturating_sub(1)).collect();
+        let columns = usize::from(format::width(&before)) + number.len();
+        self.add(Tone::Gravity(problem.gravity), format!("  {}   ^", " ".repeat(columns)));
+    }
+}
+
+fn line_of(problem: &Problem) -> String {
+    format!(":{}", problem.key.line)
+}
+
+fn place(program: &Program, span: Span) -> String {
+    program.sources.get(usize::from(span.file.0)).map_or(String::new(), |source| {
+        format!(":{}", source.line(span.start as usize))
+    })
+}
+
+/// The lines of a block without the indentation they share.
+fn dedented(code: &str) -> Vec<String> {
+    let code = code.trim_end();
+    let indent = |line: &str| line.len() - line.trim_start().len();
+    let rest = code.lines().skip(1).filter(|line| !line.trim().is_empty());
+    let shared = rest.map(indent).min().unwrap_or(0);
+    let strip = |(i, line): (usize, &str)| {
+        let cut = if i == 0 { indent(line) } else { shared.min(indent(line)) };
+        line.get(cut..).unwrap_or(line).trim_end().to_owned()
+    };
+    code.lines().enumerate().map(strip).filter(|line| !line.is_empty()).collect()
+}

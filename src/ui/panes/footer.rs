@@ -1,0 +1,85 @@
+//! The last line: what the keys do here, or a sentence, or the value being typed. How to stop the robot is always in it.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+use unicode_width::UnicodeWidthChar;
+
+use crate::ui::action::{self, Action};
+use crate::ui::app::{App, Overlay, Typing};
+use crate::ui::format;
+use crate::ui::pen::Pen;
+use crate::ui::view::Mode;
+
+/// Where the cursor stands, when there is one.
+pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Option<Position> {
+    let theme = app.theme();
+    let mut pen = Pen::new(buffer, area, 0);
+    let typing = match app.overlay() {
+        Overlay::Value(typing) => Some(typing),
+        _ => None,
+    };
+    pen.put_right(" ", theme.normal());
+    pen.put_right(" STOP", theme.stop()).put_right(if typing.is_some() { "Ctrl-X" } else { "!" }, theme.stop());
+    pen.put_right("  ", theme.normal());
+    pen.put(" ", theme.normal());
+    match (typing, app.message()) {
+        (_, Some(message)) => {
+            pen.put(message, theme.bold());
+            None
+        }
+        (Some(typing), None) => Some(draw_typing(app, typing, pen, area)),
+        (None, None) => {
+            draw_keys(app, &mut pen);
+            None
+        }
+    }
+}
+
+fn draw_typing(app: &App, typing: &Typing, mut pen: Pen, area: Rect) -> Position {
+    let theme = app.theme();
+    if pen.room() >= 58 {
+        pen.put_right("Enter sets  Esc leaves", theme.dim()).put_right("  ", theme.dim());
+    }
+    pen.put(&format::fit(&typing.var, pen.room() / 2), theme.bold()).put(" = ", theme.dim());
+    let (start, room) = (pen.at(), pen.room().saturating_sub(1));
+    let scroll = typing.input.visual_scroll(usize::from(room));
+    pen.put(&after_columns(typing.input.value(), scroll), theme.normal());
+    let cursor = typing.input.visual_cursor().saturating_sub(scroll) as u16;
+    Position::new(start.saturating_add(cursor).min(area.right().saturating_sub(1)), area.y)
+}
+
+fn after_columns(text: &str, columns: usize) -> String {
+    let mut skipped = 0;
+    let rest = text.chars().skip_while(|c| {
+        let out = skipped < columns;
+        skipped += c.width().unwrap_or(0);
+        out
+    });
+    rest.collect()
+}
+
+fn draw_keys(app: &App, pen: &mut Pen) {
+    let theme = app.theme();
+    pen.put_right(" help", theme.dim()).put_right("?", theme.key()).put_right("  ", theme.normal());
+    for entry in action::offered(app.focus()) {
+        let key = entry.keys.first().copied().unwrap_or("");
+        let (key, label) = (short(key), label(app, entry));
+        if pen.room() < format::width(&key) + 1 + format::width(label) {
+            return;
+        }
+        pen.put(&key, theme.key()).put(" ", theme.dim()).put(label, theme.dim()).put("  ", theme.dim());
+    }
+}
+
+/// `Space` is a word among words in the footer; `R` and `r` are different keys.
+fn short(key: &str) -> String {
+    if key.chars().count() > 1 { key.to_lowercase() } else { key.into() }
+}
+
+fn label(app: &App, entry: &action::Entry) -> &'static str {
+    let running = app.view().mode == Mode::Running && !app.halted();
+    match entry.action {
+        Action::Pause if !running => "run",
+        _ => entry.label,
+    }
+}

@@ -1,0 +1,149 @@
+//! The selected machine as a drawing. What happens only recolours it: no glyph moves.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::{Position, Rect};
+use ratatui::style::{Modifier, Style};
+
+use super::diagram::Diagram;
+use super::{Title, draw_nothing};
+use crate::model::{MachineId, Program, StateId, TransitionId};
+use crate::ui::app::App;
+use crate::ui::graph::{EdgeKind, Part};
+use crate::ui::layout::Pane;
+use crate::ui::view::name;
+
+pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
+    let Some((program, machine)) = app.program().zip(app.machine()) else {
+        draw_nothing(app, area, buffer, "Nothing to draw yet.");
+        return Title::new(Pane::Graph.title(), "");
+    };
+    if program[machine].states.is_empty() {
+        draw_nothing(app, area, buffer, "This machine has no states yet.");
+    }
+    let diagram = app.diagram(program, machine, area);
+    let brush = Brush::new(app, program, machine, &diagram);
+    brush.draw(area, buffer);
+    let path = program[machine].path.replace('/', " / ");
+    let note = if app.follows() { "following" } else { "" };
+    Title::new(path, note)
+}
+
+struct Brush<'a> {
+    app: &'a App,
+    program: &'a Program,
+    diagram: &'a Diagram,
+    active: Option<StateId>,
+    selected: Option<StateId>,
+    last: Option<TransitionId>,
+}
+
+impl<'a> Brush<'a> {
+    fn new(app: &'a App, program: &'a Program, machine: MachineId, diagram: &'a Diagram) -> Brush<'a> {
+        let path = &program[machine].path;
+        let view = app.view();
+        let last = view.machines.get(path).filter(|machine| machine.running).and_then(|machine| machine.last_taken);
+        Brush {
+            app,
+            program,
+            diagram,
+            active: view.active(path).and_then(|state| program.state(state)),
+            selected: app.selected().and_then(|path| program.state(path)),
+            last: last.and_then(|(index, _)| program[machine].transitions.get(index as usize).copied()),
+        }
+    }
+
+    fn draw(&self, area: Rect, buffer: &mut Buffer) {
+        let drawing = &self.diagram.drawing;
+        let (left, top) = self.origin(area);
+        for y in 0..area.height.min(drawing.height.saturating_sub(top)) {
+            for x in 0..area.width.min(drawing.width.saturating_sub(left)) {
+                let symbol = drawing.symbol(left + x, top + y);
+                let cell = drawing.cell(left + x, top + y);
+                if let Some(to) = buffer.cell_mut(Position::new(area.x + x, area.y + y))
+                    && !symbol.is_empty()
+                {
+                    to.set_symbol(&symbol).set_style(self.style(cell.part));
+                }
+            }
+        }
+        for node in 0..self.diagram.nodes.len() {
+            self.draw_inside(node, (left, top), area, buffer);
+        }
+    }
+
+    /// The drawing's cell in the upper left corner: the selected state, else the active one, is in sight.
+    fn origin(&self, area: Rect) -> (u16, u16) {
+        let drawing = &self.diagram.drawing;
+        let state = self.selected.and_then(|state| self.diagram.node_of(state));
+        let node = state.or_else(|| self.active.and_then(|state| self.diagram.node_of(state)));
+        let Some(rect) = node.and_then(|node| drawing.node_rect(node)) else { return (0, 0) };
+        let along = |end: u16, room: u16, whole: u16| {
+            (end.saturating_add(1)).saturating_sub(room).min(whole.saturating_sub(room))
+        };
+        (
+            along(rect.x + rect.width, area.width, drawing.width),
+            along(rect.y + rect.height, area.height, drawing.height),
+        )
+    }
+
+    fn style(&self, part: Part) -> Style {
+        let theme = self.app.theme();
+        match part {
+            Part::Blank => theme.normal(),
+            Part::Box(node) | Part::Mark(node) | Part::Inside(node) => self.node_style(node),
+            Part::Name(node) => {
+                let selected = self.selected.is_some() && self.diagram.nodes[node] == self.selected;
+                let style = self.node_style(node);
+                if selected { style.add_modifier(Modifier::UNDERLINED | Modifier::BOLD) } else { style }
+            }
+            Part::Line(edge) | Part::Label(edge) | Part::Head(edge) => self.edge_style(edge),
+            Part::Crossing { across, down } => {
+                let taken = |edge: usize| Some(self.diagram.edges[edge].0) == self.last;
+                self.edge_style(if taken(down) && !taken(across) { down } else { across })
+            }
+        }
+    }
+
+    fn node_style(&self, node: usize) -> Style {
+        let theme = self.app.theme();
+        let Some(state) = self.diagram.nodes[node] else { return theme.dim() };
+        if Some(state) == self.active {
+            return theme.active().add_modifier(Modifier::REVERSED);
+        }
+        match self.app.view().gravity(&self.program[state].path) {
+            Some(gravity) => theme.gravity(gravity),
+            None => theme.normal(),
+        }
+    }
+
+    fn edge_style(&self, edge: usize) -> Style {
+        let theme = self.app.theme();
+        let (id, kind) = self.diagram.edges[edge];
+        let style = match kind {
+            EdgeKind::Wildcard => theme.wildcard(),
+            EdgeKind::On | EdgeKind::Eps | EdgeKind::Ontime | EdgeKind::Exit => {
+                theme.transition(self.program[id].kind)
+            }
+        };
+        if Some(id) == self.last { style.add_modifier(Modifier::BOLD) } else { style }
+    }
+
+    /// The name of the state that is active inside.
+    fn draw_inside(&self, node: usize, (left, top): (u16, u16), area: Rect, buffer: &mut Buffer) {
+        let Some((state, room)) = self.diagram.nodes[node].zip(self.diagram.drawing.inside_rect(node)) else {
+            return;
+        };
+        let view = self.app.view();
+        let nested = self.program[state].machines.iter();
+        let Some(active) = nested.filter_map(|&inner| view.active(&self.program[inner].path)).next() else { return };
+        let at = (room.x.checked_sub(left), room.y.checked_sub(top));
+        if let (Some(x), Some(y)) = at
+            && x < area.width
+            && y < area.height
+        {
+            let width = room.width.min(area.width - x);
+            let text = crate::ui::format::fit(name(active), width);
+            buffer.set_stringn(area.x + x, area.y + y, text, usize::from(width), self.node_style(node));
+        }
+    }
+}

@@ -1,0 +1,118 @@
+//! The machines: every state in its place, the active ones marked, with the time in them and how often they were entered.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+
+use super::{Title, draw_nothing};
+use crate::model::{MachineId, Program, StateId};
+use crate::ui::app::App;
+use crate::ui::format;
+use crate::ui::layout::Pane;
+use crate::ui::pen::Pen;
+use crate::ui::tree::{Element, Row};
+use crate::ui::view::{View, name};
+
+pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
+    let rows = app.tree();
+    let Some(program) = app.program().filter(|_| !rows.is_empty()) else {
+        draw_nothing(app, area, buffer, "No machine yet. Write one in your editor and save: it runs at once.");
+        return Title::new(Pane::Machines.title(), "");
+    };
+    for (y, row) in (0..area.height).zip(rows.iter().skip(app.tree_top())) {
+        draw_row(app, program, row, Pen::new(buffer, area, y));
+    }
+    let below = rows.len().saturating_sub(app.tree_top() + usize::from(area.height));
+    let note = if below > 0 { format!("{below} more") } else { String::new() };
+    Title::new(Pane::Machines.title(), note)
+}
+
+fn draw_row(app: &App, program: &Program, row: &Row, mut pen: Pen) {
+    let theme = app.theme();
+    let selected = app.selected() == Some(&row.path);
+    pen.put(if selected { "▸" } else { " " }, theme.bold());
+    pen.column("", row.depth / 2 * 2, theme.normal());
+    match row.element {
+        Element::Machine(machine) => draw_machine(app, program, machine, &mut pen),
+        Element::State(state) => draw_state(app, program, state, &mut pen),
+    }
+    if selected && app.focus() == Pane::Machines {
+        pen.wash(theme.selected());
+    }
+}
+
+fn draw_machine(app: &App, program: &Program, machine: MachineId, pen: &mut Pen) {
+    let (theme, view) = (app.theme(), app.view());
+    let machine = &program[machine];
+    let style = if view.is_running(&machine.path) { theme.bold() } else { theme.dim() };
+    if app.is_folded(&machine.path) {
+        let inside = view.active(&machine.path).map_or("", |path| name(path));
+        pen.put_right(" ", style).put_right(inside, theme.active());
+    }
+    pen.put(&machine.name, style);
+    draw_mark(app, &machine.path, pen);
+}
+
+fn draw_state(app: &App, program: &Program, id: StateId, pen: &mut Pen) {
+    let (theme, view) = (app.theme(), app.view());
+    let state = &program[id];
+    let machine = &program[state.machine];
+    let active = view.is_active(&state.path);
+    let style = match active {
+        true => theme.active(),
+        false if view.is_running(&machine.path) => theme.normal(),
+        false => theme.dim(),
+    };
+    draw_numbers(app, program, id, pen);
+    pen.put(if active { "● " } else { "  " }, theme.active());
+    pen.put(&state.name, style);
+    if app.is_folded(&state.path) {
+        pen.put(" …", theme.dim());
+    }
+    draw_mark(app, &state.path, pen);
+}
+
+/// From the right: visits, the time in the state or until its timeout, and that as a bar.
+fn draw_numbers(app: &App, program: &Program, id: StateId, pen: &mut Pen) {
+    let (theme, view) = (app.theme(), app.view());
+    let state = &program[id];
+    let width = pen.room();
+    if width >= 22 {
+        let visits = view.states.get(&state.path).map_or(0, |state| state.visits);
+        let visits = if visits == 0 { String::new() } else { format!("×{}", count(visits)) };
+        pen.right_column(&visits, 6, theme.dim());
+    }
+    if width < 16 {
+        return;
+    }
+    let timeout = view.timeout(program, id);
+    pen.right_column(&time(view, program, id), 8, theme.normal());
+    if width >= 31 {
+        let bar = timeout.map_or(String::new(), |timeout| format::bar(timeout, 5));
+        pen.right_column(&bar, 6, theme.active());
+    }
+}
+
+/// `-120 ms` until a timeout, or else how long the state has been active.
+fn time(view: &View, program: &Program, id: StateId) -> String {
+    if let Some(timeout) = view.timeout(program, id) {
+        return format!("-{}", format::duration(timeout.left()));
+    }
+    let state = &program[id];
+    let active = view.is_active(&state.path);
+    let elapsed = view.elapsed(&program[state.machine].path).filter(|_| active);
+    elapsed.map_or(String::new(), |elapsed| format::duration(elapsed.ms()))
+}
+
+fn count(n: u64) -> String {
+    match n {
+        0..10_000 => n.to_string(),
+        10_000..10_000_000 => format!("{}k", n / 1000),
+        _ => format!("{}M", n / 1_000_000),
+    }
+}
+
+fn draw_mark(app: &App, path: &str, pen: &mut Pen) {
+    if let Some(gravity) = app.view().gravity(path) {
+        pen.put(" !", app.theme().gravity(gravity));
+    }
+}

@@ -1,0 +1,64 @@
+//! What each pane shows, row by row. A pane reads the app and writes cells; it changes nothing.
+
+pub mod detail;
+pub mod diagram;
+pub mod footer;
+pub mod graph;
+pub mod help;
+pub mod log;
+pub mod machines;
+pub mod status;
+pub mod variables;
+pub mod world;
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+
+use super::app::App;
+use super::layout::Pane;
+use super::pen::Pen;
+
+/// The words in a pane's first row, and what is noted at their right.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Title {
+    pub text: String,
+    pub note: String,
+}
+
+impl Title {
+    pub fn new(text: impl Into<String>, note: impl Into<String>) -> Title {
+        Title { text: text.into(), note: note.into() }
+    }
+}
+
+/// A pane with its title.
+pub fn draw(app: &App, pane: Pane, area: Rect, buffer: &mut Buffer) {
+    let inside = Rect { y: area.y + 1.min(area.height), height: area.height.saturating_sub(1), ..area };
+    let title = match pane {
+        Pane::Machines => machines::draw(app, inside, buffer),
+        Pane::Graph => graph::draw(app, inside, buffer),
+        Pane::Variables => variables::draw(app, inside, buffer),
+        Pane::Log => log::draw(app, inside, buffer),
+        Pane::World => world::draw(app, inside, buffer),
+        Pane::Detail => detail::draw(app, inside, buffer),
+    };
+    draw_title(app, pane, &title, Pen::new(buffer, area, 0));
+}
+
+fn draw_title(app: &App, pane: Pane, title: &Title, mut pen: Pen) {
+    let theme = app.theme();
+    let style = if app.focus() == pane { theme.focused_title() } else { theme.title() };
+    pen.put("─ ", theme.rule()).put_right("─", theme.rule());
+    if !title.note.is_empty() && pen.room() > 24 {
+        pen.put_right(" ", style).put_right(&title.note, style).put_right(" ", style);
+    }
+    pen.put(&title.text, style).put(" ", style).fill("─", theme.rule());
+}
+
+/// A sentence where there is nothing else to show.
+fn draw_nothing(app: &App, area: Rect, buffer: &mut Buffer, sentence: &str) {
+    let lines = super::format::wrap(sentence, area.width.saturating_sub(2));
+    for (y, line) in (0..area.height).zip(lines) {
+        Pen::new(buffer, area, y).put(" ", app.theme().dim()).put(&line, app.theme().dim());
+    }
+}

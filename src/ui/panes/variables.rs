@@ -1,0 +1,113 @@
+//! The variables in scope and what the robot tells, each value in its column.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use serde_json::Value;
+
+use super::{Title, draw_nothing};
+use crate::runtime::time::Time;
+use crate::ui::app::App;
+use crate::ui::format;
+use crate::ui::layout::Pane;
+use crate::ui::pen::Pen;
+use crate::ui::scope::{Row, Way};
+use crate::ui::view::Variable;
+
+/// Columns of a number.
+const VALUE: u16 = 9;
+
+pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
+    let rows = app.values();
+    if rows.is_empty() {
+        draw_nothing(app, area, buffer, "No variables, and nothing from a robot.");
+    }
+    for (y, row) in (0..area.height).zip(rows.iter().skip(app.values_top())) {
+        draw_row(app, row, Pen::new(buffer, area, y));
+    }
+    let below = rows.len().saturating_sub(app.values_top() + usize::from(area.height));
+    let note = if below > 0 { format!("{below} more") } else { String::new() };
+    Title::new(Pane::Variables.title(), note)
+}
+
+fn draw_row(app: &App, row: &Row, mut pen: Pen) {
+    let theme = app.theme();
+    let names = (pen.room() * 2 / 5).clamp(8, 18);
+    let selected = row.path().is_some() && row.path() == app.selected_value();
+    pen.put(if selected { "▸" } else { " " }, theme.bold());
+    match row {
+        Row::Heading(scope) => {
+            pen.put(scope, theme.dim());
+        }
+        Row::Variable { path, name } => {
+            pen.put(" ", theme.normal()).column(name, names, theme.normal());
+            if let Some(variable) = app.view().variables.get(path) {
+                draw_variable(app, variable, &mut pen);
+            }
+        }
+        Row::Field { name, value, at, way, .. } => {
+            let age = match way {
+                Way::Input => age(app.view().t.since(*at)),
+                Way::Output => String::new(),
+            };
+            let arrow = if *way == Way::Output { "→" } else { " " };
+            pen.put(arrow, theme.dim()).column(name, names, theme.normal());
+            pen.right_column(&age, 8, theme.dim());
+            draw_value(app, value, theme.normal(), &mut pen);
+        }
+    }
+    if selected && app.focus() == Pane::Variables {
+        pen.wash(theme.selected());
+    }
+}
+
+fn draw_variable(app: &App, variable: &Variable, pen: &mut Pen) {
+    let theme = app.theme();
+    let Some(value) = &variable.value else {
+        pen.column_right("–", VALUE, theme.dim());
+        return;
+    };
+    let fresh = variable.is_fresh(app.view().t);
+    draw_value(app, value, if fresh { theme.fresh() } else { theme.normal() }, pen);
+    let (aside, room) = (aside(variable), pen.room().saturating_sub(2));
+    match aside {
+        Aside::Was(previous) if room >= 5 => {
+            pen.put("  was ", theme.dim()).put(&format::value(previous), theme.dim());
+        }
+        Aside::Moved if room >= 4 => {
+            let history: Vec<f64> = variable.history.iter().copied().collect();
+            pen.put("  ", theme.dim()).put(&format::sparkline(&history, room.min(16)), theme.dim());
+        }
+        _ => (),
+    }
+}
+
+/// Numbers at the right of their column, everything else from its left and as far as there is room.
+fn draw_value(app: &App, value: &Value, style: ratatui::style::Style, pen: &mut Pen) {
+    let text = format::value(value);
+    match value {
+        Value::Number(_) | Value::Bool(_) | Value::Null => pen.column_right(&text, VALUE, style),
+        _ if format::width(&text) <= VALUE => pen.column_right(&text, VALUE, style),
+        _ => pen.put(" ", app.theme().normal()).put(&text, style),
+    };
+}
+
+/// What stands beside a value.
+enum Aside<'a> {
+    Nothing,
+    /// A person set it.
+    Was(&'a Value),
+    Moved,
+}
+
+fn aside(variable: &Variable) -> Aside<'_> {
+    let set_by_person = matches!(&*variable.by, "command" | "init");
+    match &variable.previous {
+        Some(previous) if set_by_person && variable.previous != variable.value => Aside::Was(previous),
+        _ if variable.history.len() > 1 => Aside::Moved,
+        _ => Aside::Nothing,
+    }
+}
+
+fn age(age: Time) -> String {
+    format::duration(age.ms())
+}

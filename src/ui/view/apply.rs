@@ -1,0 +1,260 @@
+//! The fold: what each record changes in the picture.
+
+use std::sync::Arc;
+
+use serde_json::Value;
+
+use super::problem::{Origin, Problem};
+use super::{Edit, Kind, Message, Mode, Path, TAKEN_KEPT, View, World, name, owner, within};
+use crate::model::Program;
+use crate::runtime::command::Command;
+use crate::runtime::record::{
+    BridgeState, Fault, Finding, Forced, Health, Load, Log, Record, Taken, What,
+};
+
+impl View {
+    pub fn apply(&mut self, record: &Record) {
+        self.step = record.step;
+        self.t = record.t;
+        match &record.what {
+            What::Load(load) => self.load(load),
+            What::Reject { findings } => self.reject(findings),
+            What::Command { command } => self.command(command),
+            What::Spawn { machine, by } => self.spawn(machine, by),
+            What::Enter { state } => self.enter(state),
+            What::Exit { state } => self.exit(state),
+            What::Transition(taken) => self.take(taken),
+            What::Discard { machine } => self.discard(machine),
+            What::Set { var, value, by } => self.set(var, value, by),
+            What::Input { bridge, name, value } => self.input(bridge, name, value),
+            What::Output { bridge, name, value } => self.output(bridge, name, value),
+            What::Call { .. } | What::Reply { .. } => (),
+            What::Log(log) => self.log(log),
+            What::Error(fault) => self.fault(fault),
+            What::Pause { reason } => self.pause(reason),
+            What::Resume => self.mode = Mode::Running,
+            What::Force { state, how } => self.force(state, *how),
+            What::Restart { reason } => self.restart(reason),
+            What::Stop { reason } => self.journal.note(self.t, format!("robot stopped: {reason}")),
+            What::Skip { steps } => self.skipped += steps,
+            What::Status { rate, late } => (self.actual, self.late) = (Some(*rate), *late),
+            What::Bridge(state) => self.bridge(state),
+        }
+    }
+
+    fn load(&mut self, load: &Load) {
+        let edit = if self.loads == 0 { Edit::Loaded } else { Edit::of_load(load) };
+        self.loads += 1;
+        if let Some(program) = &load.program {
+            self.take_over(program);
+        }
+        if load.restarted {
+            self.begin_again();
+        }
+        self.problems = load
+            .findings
+            .iter()
+            .map(|finding| Problem::from_finding(finding, Origin::Check, self.t))
+            .collect();
+        self.journal.note(self.t, note_of_edit(&edit));
+        self.edit = Some(edit);
+    }
+
+    fn take_over(&mut self, program: &Arc<Program>) {
+        self.machines.retain(|path, _| program.machine(path).is_some());
+        self.states.retain(|path, _| program.state(path).is_some());
+        self.variables.retain(|path, _| program.var(path).is_some());
+        self.program = Some(program.clone());
+    }
+
+    fn reject(&mut self, findings: &[Finding]) {
+        self.problems.retain(|problem| problem.origin != Origin::Rejected);
+        let rejected = findings.iter().map(|finding| Problem::from_finding(finding, Origin::Rejected, self.t));
+        self.problems.splice(0..0, rejected);
+        let edit = Edit::of_reject(findings);
+        self.journal.note(self.t, note_of_edit(&edit));
+        self.edit = Some(edit);
+    }
+
+    fn command(&mut self, command: &Command) {
+        match command {
+            Command::Rate { hz } => self.rate = *hz,
+            Command::Runstop => self.mode = Mode::Stopped,
+            Command::PutAtStart { bridge } => {
+                if let Some(world) = self.world.as_mut().filter(|world| *world.bridge == **bridge) {
+                    world.trail.clear();
+                }
+            }
+            Command::Set { var, value } => self.journal.note(self.t, format!("{var} set to {value}")),
+            _ => (),
+        }
+    }
+
+    fn spawn(&mut self, path: &Path, by: &Option<Path>) {
+        let t = self.t;
+        let machine = self.machines.entry(path.clone()).or_default();
+        machine.running = true;
+        machine.active = None;
+        machine.entered = t;
+        machine.spawned_by = by.clone();
+    }
+
+    fn enter(&mut self, state: &Path) {
+        self.activate(state);
+        self.states.entry(state.clone()).or_default().visits += 1;
+    }
+
+    fn activate(&mut self, state: &Path) {
+        let Some(owner) = owner(state) else { return };
+        let t = self.t;
+        let machine = self.machines.entry(owner.into()).or_default();
+        machine.running = true;
+        machine.active = Some(state.clone());
+        machine.entered = t;
+    }
+
+    fn exit(&mut self, state: &Path) {
+        let t = self.t;
+        self.states.entry(state.clone()).or_default().last_left = Some(t);
+        let machine = owner(state).and_then(|machine| self.machines.get_mut(machine));
+        if let Some(machine) = machine.filter(|machine| machine.active.as_ref() == Some(state)) {
+            machine.active = None;
+        }
+    }
+
+    fn take(&mut self, taken: &Taken) {
+        let t = self.t;
+        self.machines.entry(taken.machine.clone()).or_default().last_taken = Some((taken.index, t));
+        if self.taken.len() == TAKEN_KEPT {
+            self.taken.pop_front();
+        }
+        self.taken.push_back((t, taken.clone()));
+        let why = taken.name.as_ref().unwrap_or(&taken.trigger);
+        let text = format!("{} → {}  {why}", name(&taken.from), name(&taken.to));
+        let place = self.place_of(taken);
+        self.journal.add(t, Kind::Change, text, taken.to.clone(), place);
+    }
+
+    fn place_of(&self, taken: &Taken) -> Option<(Path, usize)> {
+        let program = self.program.as_ref()?;
+        let machine = &program[program.machine(&taken.machine)?];
+        let span = program[*machine.transitions.get(taken.index as usize)?].span;
+        let source = program.source(span);
+        Some((source.name.clone(), source.line(span.start as usize)))
+    }
+
+    fn discard(&mut self, path: &Path) {
+        for (inner, machine) in &mut self.machines {
+            if within(inner, path) {
+                machine.running = false;
+                machine.active = None;
+            }
+        }
+        for (var, variable) in &mut self.variables {
+            if var.contains('/') && within(var, path) {
+                variable.forget();
+            }
+        }
+    }
+
+    fn set(&mut self, var: &Path, value: &Value, by: &Path) {
+        let t = self.t;
+        self.variables.entry(var.clone()).or_default().set(value, by, t);
+    }
+
+    fn input(&mut self, bridge: &Path, name: &Path, value: &Value) {
+        let message = Message { value: value.clone(), at: self.t };
+        self.bridges.entry(bridge.clone()).or_default().inputs.insert(name.clone(), message);
+        let world = self.world.as_mut().filter(|world| world.bridge == *bridge && world.pose_input == *name);
+        if let Some(world) = world {
+            world.moved(value);
+        }
+    }
+
+    fn output(&mut self, bridge: &Path, name: &Path, value: &Value) {
+        let message = Message { value: value.clone(), at: self.t };
+        self.bridges.entry(bridge.clone()).or_default().outputs.insert(name.clone(), message);
+    }
+
+    fn log(&mut self, log: &Log) {
+        let place = (!log.file.is_empty()).then(|| (log.file.clone(), log.line));
+        self.journal.add(self.t, Kind::Log(log.level), log.message.clone(), log.state.clone(), place);
+    }
+
+    fn fault(&mut self, fault: &Fault) {
+        let fault = Problem::from_fault(fault, self.t);
+        match self.problems.iter_mut().find(|known| known.key == fault.key && known.origin == Origin::Run) {
+            Some(known) => *known = fault,
+            None => self.problems.push(fault),
+        }
+    }
+
+    fn pause(&mut self, reason: &str) {
+        if self.mode != Mode::Stopped {
+            self.mode = Mode::Paused { reason: reason.into() };
+        }
+    }
+
+    fn force(&mut self, state: &Path, how: Forced) {
+        self.activate(state);
+        let verb = match how {
+            Forced::Transition => "sent to",
+            Forced::Jump => "jumped to",
+        };
+        let machine = owner(state).map_or("", name);
+        self.journal.note(self.t, format!("{machine} {verb} {}", name(state)));
+    }
+
+    fn restart(&mut self, reason: &str) {
+        self.begin_again();
+        self.journal.note(self.t, format!("restarted: {reason}"));
+    }
+
+    fn begin_again(&mut self) {
+        self.machines.clear();
+        self.states.clear();
+        self.variables.values_mut().for_each(super::Variable::forget);
+    }
+
+    fn bridge(&mut self, state: &BridgeState) {
+        let t = self.t;
+        let bridge = self.bridges.entry(state.bridge.clone()).or_default();
+        if bridge.health != Some(state.state) {
+            bridge.since = t;
+            self.journal.note(t, note_of_bridge(state));
+        }
+        bridge.kind = state.kind.clone();
+        bridge.health = Some(state.state);
+        bridge.message = state.message.clone();
+        if let Some(text) = &state.world {
+            let known = self.world.as_ref().is_some_and(|world| world.text == text.text);
+            if !known {
+                self.world = Some(World::new(&state.bridge, text));
+            }
+        }
+    }
+}
+
+fn note_of_edit(edit: &Edit) -> String {
+    match edit {
+        Edit::Loaded => "program loaded".into(),
+        Edit::Taken { changes, restarted: None } => format!("saved: {changes}"),
+        Edit::Taken { changes, restarted: Some(reason) } => format!("saved: {changes}; restarted: {reason}"),
+        Edit::Rejected { first: Some(first), .. } => {
+            format!("not taken over: line {}: {}", first.line, first.message)
+        }
+        Edit::Rejected { first: None, .. } => "not taken over".into(),
+    }
+}
+
+fn note_of_bridge(state: &BridgeState) -> String {
+    let health = match state.state {
+        Health::Connecting => "connecting",
+        Health::Up => "up",
+        Health::Lost => "lost",
+    };
+    match &state.message {
+        Some(message) => format!("{} {health}: {message}", state.bridge),
+        None => format!("{} {health}", state.bridge),
+    }
+}

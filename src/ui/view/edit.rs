@@ -1,0 +1,75 @@
+//! The outcome of a save, in the few words that fit the status line.
+
+use crate::runtime::record::{Change, Element, Finding, Load, Op};
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum Edit {
+    /// The first program.
+    Loaded,
+    /// `changes`: `+2 states, ~1 action`.
+    Taken { changes: String, restarted: Option<String> },
+    /// The program that runs goes on; the first finding says why.
+    Rejected { first: Option<Finding>, others: usize },
+}
+
+impl Edit {
+    pub fn of_load(load: &Load) -> Edit {
+        let reason = || load.reason.clone().unwrap_or_else(|| "the program began again".into());
+        Edit::Taken { changes: summary(&load.changes), restarted: load.restarted.then(reason) }
+    }
+
+    pub fn of_reject(findings: &[Finding]) -> Edit {
+        Edit::Rejected { first: findings.first().cloned(), others: findings.len().saturating_sub(1) }
+    }
+}
+
+/// `+2 states, -1 event, ~1 action`: what counts most first.
+pub fn summary(changes: &[Change]) -> String {
+    let mut kinds: Vec<(Element, Op, usize)> = Vec::new();
+    for change in changes {
+        match kinds.iter_mut().find(|(kind, op, _)| (*kind, *op) == (change.kind, change.op)) {
+            Some((_, _, count)) => *count += 1,
+            None => kinds.push((change.kind, change.op, 1)),
+        }
+    }
+    if kinds.is_empty() {
+        return "no change".into();
+    }
+    kinds.sort_by_key(|&(kind, op, _)| (rank(kind), op));
+    let words: Vec<String> = kinds.iter().map(|&(kind, op, count)| phrase(kind, op, count)).collect();
+    words.join(", ")
+}
+
+fn rank(kind: Element) -> usize {
+    const ORDER: [Element; 8] = [
+        Element::Machine,
+        Element::State,
+        Element::Transition,
+        Element::Event,
+        Element::Action,
+        Element::Variable,
+        Element::Spawn,
+        Element::Bridge,
+    ];
+    ORDER.iter().position(|&other| other == kind).unwrap_or(ORDER.len())
+}
+
+fn phrase(kind: Element, op: Op, count: usize) -> String {
+    let sign = match op {
+        Op::Added => '+',
+        Op::Removed => '-',
+        Op::Changed => '~',
+    };
+    let noun = match kind {
+        Element::Bridge => "bridge",
+        Element::Variable => "variable",
+        Element::Machine => "machine",
+        Element::State => "state",
+        Element::Event => "event",
+        Element::Transition => "transition",
+        Element::Spawn => "spawn",
+        Element::Action => "action",
+    };
+    let plural = if count == 1 { "" } else { "s" };
+    format!("{sign}{count} {noun}{plural}")
+}

@@ -1,0 +1,132 @@
+//! The picture of the running program, folded from records alone: a replay gives the same picture as the run.
+//! Knows nothing of keys, panes or the terminal.
+
+mod apply;
+mod bridge;
+mod edit;
+mod journal;
+mod machine;
+mod problem;
+mod variable;
+mod world;
+
+use std::collections::{BTreeMap, VecDeque};
+use std::sync::Arc;
+
+pub use bridge::{Bridge, Message};
+pub use edit::Edit;
+pub use journal::{Entry, Journal, Kind};
+pub use machine::{Machine, State, Timeout};
+pub use problem::{Gravity, Problem, ProblemKey};
+pub use variable::Variable;
+pub use world::World;
+
+use crate::model::Program;
+use crate::runtime::record::Taken;
+use crate::runtime::time::Time;
+
+pub type Path = Arc<str>;
+
+/// How many of the latest transitions are kept.
+pub const TAKEN_KEPT: usize = 200;
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct View {
+    pub mode: Mode,
+    /// Steps a second, as asked for; 0: as fast as possible.
+    pub rate: f64,
+    /// Steps a second, as they are.
+    pub actual: Option<f64>,
+    /// How late the last step was, ms.
+    pub late: f64,
+    /// Steps that were not made in time.
+    pub skipped: u64,
+    pub step: u64,
+    pub t: Time,
+    pub program: Option<Arc<Program>>,
+    /// By path; those that are, or were, running.
+    pub machines: BTreeMap<Path, Machine>,
+    pub states: BTreeMap<Path, State>,
+    pub variables: BTreeMap<Path, Variable>,
+    pub bridges: BTreeMap<Path, Bridge>,
+    /// The latest transitions, oldest first.
+    pub taken: VecDeque<(Time, Taken)>,
+    pub journal: Journal,
+    /// What is wrong, in the order found.
+    pub problems: Vec<Problem>,
+    /// The outcome of the last save.
+    pub edit: Option<Edit>,
+    pub world: Option<World>,
+    /// How many times a program was taken over.
+    pub loads: u64,
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub enum Mode {
+    Running,
+    Paused {
+        reason: String,
+    },
+    /// The robot was told to stop; nothing runs until a person resumes.
+    Stopped,
+}
+
+impl View {
+    /// Before the first record. `rate`: steps a second; 0: as fast as possible.
+    pub fn new(rate: f64) -> View {
+        View {
+            mode: Mode::Running,
+            rate,
+            actual: None,
+            late: 0.0,
+            skipped: 0,
+            step: 0,
+            t: Time::ZERO,
+            program: None,
+            machines: BTreeMap::new(),
+            states: BTreeMap::new(),
+            variables: BTreeMap::new(),
+            bridges: BTreeMap::new(),
+            taken: VecDeque::new(),
+            journal: Journal::default(),
+            problems: Vec::new(),
+            edit: None,
+            world: None,
+            loads: 0,
+        }
+    }
+
+    pub fn is_running(&self, machine: &str) -> bool {
+        self.machines.get(machine).is_some_and(|machine| machine.running)
+    }
+
+    /// The path of the state a running machine is in.
+    pub fn active(&self, machine: &str) -> Option<&Path> {
+        let machine = self.machines.get(machine)?;
+        machine.active.as_ref().filter(|_| machine.running)
+    }
+
+    pub fn is_active(&self, state: &str) -> bool {
+        owner(state).and_then(|machine| self.active(machine)).is_some_and(|active| **active == *state)
+    }
+
+    /// The worst that is wrong with an element or anything inside it.
+    pub fn gravity(&self, path: &str) -> Option<Gravity> {
+        self.problems.iter().filter(|problem| problem.concerns(path)).map(|problem| problem.gravity).max()
+    }
+}
+
+/// The path that holds a path: the machine of a state, the state of a nested machine, the machine of a variable.
+pub fn owner(path: &str) -> Option<&str> {
+    path.rsplit_once('/').map(|(owner, _)| owner)
+}
+
+/// The last name of a path.
+pub fn name(path: &str) -> &str {
+    path.rsplit_once('/').map_or(path, |(_, name)| name)
+}
+
+/// Whether `path` is `outer` or lies inside it.
+pub fn within(path: &str, outer: &str) -> bool {
+    path.strip_prefix(outer).is_some_and(|rest| rest.is_empty() || rest.starts_with('/'))
+}

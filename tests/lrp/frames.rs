@@ -1,0 +1,136 @@
+//! Whole frames as text, one file each under tests/frames; `UPDATE=1` writes them anew.
+
+use std::fs;
+use std::path::PathBuf;
+
+use lrp::runtime::record::{Finding, What};
+use lrp::ui::app::{App, Event, Options};
+use lrp::ui::key::Key;
+use lrp::ui::theme::Theme;
+use ratatui::Terminal;
+use ratatui::backend::TestBackend;
+use ratatui::buffer::{Buffer, Cell};
+use ratatui::layout::Size;
+use ratatui::style::{Color, Modifier};
+
+use crate::story::Story;
+
+/// The screen of a size after some records.
+pub fn screen(width: u16, height: u16, story: &Story) -> App {
+    let size = Size::new(width, height);
+    let options = Options { file: "line_follower.lrp".into(), rate: 10.0, theme: Theme::Colours, size };
+    let mut app = App::new(options);
+    for record in &story.records {
+        app.record(record);
+    }
+    app
+}
+
+/// Presses keys given as text: `Tab Down t`.
+pub fn press(app: &mut App, keys: &str) -> Vec<lrp::ui::app::Effect> {
+    let key = |text: &str| Event::Key(text.parse::<Key>().expect("a key").into());
+    keys.split_whitespace().flat_map(|text| app.event(key(text))).collect()
+}
+
+pub fn frame(app: &App) -> String {
+    let Size { width, height } = app.options().size;
+    let mut terminal = Terminal::new(TestBackend::new(width, height)).expect("a terminal");
+    terminal.draw(|frame| app.draw(frame)).expect("a frame");
+    text(terminal.backend().buffer())
+}
+
+/// The glyphs, then one letter a cell where a style tells something.
+fn text(buffer: &Buffer) -> String {
+    let rows = buffer.content.chunks(usize::from(buffer.area.width));
+    let glyphs = rows.clone().map(|row| line(row.iter().map(|cell| cell.symbol().to_owned())));
+    let styles = rows.map(|row| line(row.iter().map(|cell| letter(cell).to_string())));
+    let legend = "-- styles: , dim  + bold  r red  g green  y yellow  b blue  m magenta  c cyan  (upper case: bold)  # reversed\n";
+    glyphs.chain([legend.to_owned()]).chain(styles).collect()
+}
+
+fn line(cells: impl Iterator<Item = String>) -> String {
+    let line: String = cells.collect();
+    format!("{}\n", line.trim_end())
+}
+
+fn letter(cell: &Cell) -> char {
+    let letter = match cell.fg {
+        Color::Red => 'r',
+        Color::Green => 'g',
+        Color::Yellow => 'y',
+        Color::LightBlue => 'b',
+        Color::Magenta => 'm',
+        Color::Cyan => 'c',
+        _ if cell.modifier.contains(Modifier::REVERSED) => '#',
+        _ if cell.modifier.contains(Modifier::BOLD) => '+',
+        _ if cell.modifier.contains(Modifier::UNDERLINED) => '_',
+        _ if cell.modifier.contains(Modifier::DIM) => ',',
+        _ => ' ',
+    };
+    let blank = cell.symbol() == " " && !cell.modifier.contains(Modifier::REVERSED);
+    match (blank, cell.modifier.contains(Modifier::BOLD)) {
+        (true, _) => ' ',
+        (false, true) => letter.to_ascii_uppercase(),
+        (false, false) => letter,
+    }
+}
+
+fn check(name: &str, app: &App) {
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/frames").join(format!("{name}.txt"));
+    let seen = frame(app);
+    if std::env::var_os("UPDATE").is_some() {
+        return fs::write(path, seen).expect("the frame is written");
+    }
+    let wanted = fs::read_to_string(&path).unwrap_or_default();
+    assert!(seen == wanted, "{name} differs; UPDATE=1 writes it anew:\n{seen}\nwas:\n{wanted}");
+}
+
+const SIZES: [(u16, u16); 5] = [(80, 24), (120, 40), (80, 12), (40, 24), (200, 60)];
+
+fn check_sizes(name: &str, story: &Story, keys: &str) {
+    for (width, height) in SIZES {
+        let mut app = screen(width, height, story);
+        press(&mut app, keys);
+        check(&format!("{name}_{width}x{height}"), &app);
+    }
+}
+
+#[test]
+fn searching() {
+    check_sizes("searching", &Story::searching(), "Down Down Down");
+}
+
+#[test]
+fn the_outer_machine() {
+    check_sizes("outer", &Story::searching(), "Down");
+}
+
+#[test]
+fn with_a_fault() {
+    let mut story = Story::searching();
+    story.at(81).fault("attempt to index a nil value (field 'range')", "follower/looking/lookalgo/lookright", 19, 12);
+    story.tell(What::Pause { reason: "an error in lookright".into() });
+    check_sizes("fault", &story, "4 Down i");
+}
+
+#[test]
+fn with_a_rejected_edit() {
+    let mut story = Story::searching();
+    story.at(81).tell(What::Reject {
+        findings: vec![Finding {
+            severity: "error".into(),
+            code: "unclosed-bracket".into(),
+            message: "this `(` is never closed".into(),
+            help: Some("add a `)` before line 16".into()),
+            file: "line_follower.lrp".into(),
+            line: 15,
+            column: 5,
+        }],
+    });
+    check_sizes("rejected", &story, "");
+}
+
+#[test]
+fn an_empty_program() {
+    check_sizes("empty", &Story::new(), "");
+}
