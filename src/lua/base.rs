@@ -44,8 +44,7 @@ pub(super) unsafe extern "C-unwind" fn setmetatable(state: *mut ffi::lua_State) 
             if ffi::lua_rawget(state, 2) != ffi::LUA_TNIL {
                 return ffi::luaL_error(
                     state,
-                    c"a metatable can't have '__gc' here; '__close' and '<close>' are at hand"
-                        .as_ptr(),
+                    c"a metatable can't have '__gc' here; '__close' and '<close>' are at hand".as_ptr(),
                 );
             }
             ffi::lua_pop(state, 1);
@@ -58,10 +57,7 @@ pub(super) unsafe extern "C-unwind" fn rawset(state: *mut ffi::lua_State) -> c_i
     unsafe {
         ffi::lua_rawgeti(state, ffi::LUA_REGISTRYINDEX, ffi::LUA_RIDX_GLOBALS);
         if ffi::lua_rawequal(state, 1, -1) != 0 {
-            return ffi::luaL_error(
-                state,
-                c"there are no globals; declare a variable or use 'local'".as_ptr(),
-            );
+            return ffi::luaL_error(state, c"there are no globals; declare a variable or use 'local'".as_ptr());
         }
         ffi::lua_pop(state, 1);
         originals().rawset(state)
@@ -95,19 +91,13 @@ unsafe fn complain(state: *mut ffi::lua_State, before: &str, after: &str) -> c_i
 }
 
 /// Everything Rust owns is gone again when this returns, as what follows leaves by a jump.
-unsafe fn describe(
-    state: *mut ffi::lua_State,
-    before: &str,
-    after: &str,
-    buffer: &mut [u8; 512],
-) -> usize {
+unsafe fn describe(state: *mut ffi::lua_State, before: &str, after: &str, buffer: &mut [u8; 512]) -> usize {
     let name = unsafe {
         let mut length = 0;
         match ffi::lua_type(state, 2) {
             ffi::LUA_TSTRING => {
                 let bytes = ffi::lua_tolstring(state, 2, &mut length);
-                String::from_utf8_lossy(std::slice::from_raw_parts(bytes.cast(), length))
-                    .into_owned()
+                String::from_utf8_lossy(std::slice::from_raw_parts(bytes.cast(), length)).into_owned()
             }
             kind => text::type_name(kind).to_owned(),
         }

@@ -82,25 +82,16 @@ impl Sandbox {
         mlua.set_app_data(desk.clone());
         // SAFETY: the state is live, nothing runs, and the application data keeps the desk as long as the state.
         unsafe { mlua.exec_raw::<()>((), |state| super::desk::install(state, Rc::as_ptr(desk)))? };
-        let (environment, own, loaded) =
-            (mlua.globals(), mlua.create_table()?, mlua.create_table()?);
+        let (environment, own, loaded) = (mlua.globals(), mlua.create_table()?, mlua.create_table()?);
         own.set("loaded", &loaded)?;
-        let sandbox = Self {
-            mlua,
-            environment,
-            loaded,
-            own,
-        };
+        let sandbox = Self { mlua, environment, loaded, own };
         sandbox.take_originals()?;
         let order = sandbox.order()?;
         sandbox.replace_functions()?;
         sandbox.run_prelude(access, order, seed)?;
         sandbox.protect_strings()?;
         sandbox.be_strict()?;
-        let names = sandbox
-            .environment
-            .pairs::<String, mlua::Value>()
-            .filter_map(|pair| Some(pair.ok()?.0));
+        let names = sandbox.environment.pairs::<String, mlua::Value>().filter_map(|pair| Some(pair.ok()?.0));
         desk.known.borrow_mut().extend(names);
         Ok(sandbox)
     }
@@ -118,11 +109,7 @@ impl Sandbox {
 
     fn order(&self) -> mlua::Result<Order> {
         let order: String = self.mlua.load(KEYS).eval()?;
-        Ok(if order == KNOWN_ORDER.trim_end() {
-            Order::Fixed
-        } else {
-            Order::ByKey
-        })
+        Ok(if order == KNOWN_ORDER.trim_end() { Order::Fixed } else { Order::ByKey })
     }
 
     fn take_originals(&self) -> mlua::Result<()> {
@@ -149,10 +136,7 @@ impl Sandbox {
         let function: Function = library.raw_get(name)?;
         let mut found = None;
         // SAFETY: the function is on top of the stack.
-        unsafe {
-            self.mlua
-                .exec_raw::<()>(function, |state| found = ffi::lua_tocfunction(state, -1))?
-        };
+        unsafe { self.mlua.exec_raw::<()>(function, |state| found = ffi::lua_tocfunction(state, -1))? };
         found.ok_or_else(|| mlua::Error::runtime(format!("{name} isn't Lua's own")))
     }
 
@@ -165,14 +149,9 @@ impl Sandbox {
         if !env.contains_key("os")? {
             env.raw_set("os", self.mlua.create_table()?)?;
         }
-        env.raw_get::<Table>("string")?
-            .raw_set("dump", mlua::Value::Nil)?;
+        env.raw_get::<Table>("string")?.raw_set("dump", mlua::Value::Nil)?;
         for (library, functions) in FUNCTIONS {
-            let library = if library.is_empty() {
-                env.clone()
-            } else {
-                env.raw_get(*library)?
-            };
+            let library = if library.is_empty() { env.clone() } else { env.raw_get(*library)? };
             for &(name, function) in *functions {
                 // SAFETY: each keeps to Lua's rules for C functions: it owns nothing that needs a destructor where it can raise an error.
                 library.raw_set(name, unsafe { self.mlua.create_c_function(function)? })?;
@@ -183,30 +162,23 @@ impl Sandbox {
 
     fn run_prelude(&self, access: Access, order: Order, seed: u64) -> mlua::Result<()> {
         for name in ["now", "pcall", "getmetatable", "rawget"] {
-            self.own
-                .raw_set(name, self.environment.raw_get::<Function>(name)?)?;
+            self.own.raw_set(name, self.environment.raw_get::<Function>(name)?)?;
         }
         self.own.raw_set("seed", seed as i64)?;
         self.own.raw_set("date", self.date(access)?)?;
-        self.set_finder(Box::new(|name| {
-            Err(format!("module '{name}' is not found"))
-        }))?;
+        self.set_finder(Box::new(|name| Err(format!("module '{name}' is not found"))))?;
         let order = match order {
             Order::Fixed => "as stored",
             Order::ByKey => "by key",
         };
         let prelude = self.mlua.load(include_str!("prelude.lua")).set_name("=lrp");
         prelude.call::<()>((&self.environment, &self.own, order))?;
-        for (name, key) in [
-            ("less", &raw const bounded::LESS),
-            ("compare", &raw const bounded::COMPARE),
-        ] {
+        for (name, key) in [("less", &raw const bounded::LESS), ("compare", &raw const bounded::COMPARE)] {
             let function: Function = self.own.raw_get(name)?;
             // SAFETY: the function is on top of the stack; the key is an address of ours.
             unsafe {
-                self.mlua.exec_raw::<()>(function, |state| {
-                    ffi::lua_rawsetp(state, ffi::LUA_REGISTRYINDEX, key.cast())
-                })?
+                self.mlua
+                    .exec_raw::<()>(function, |state| ffi::lua_rawsetp(state, ffi::LUA_REGISTRYINDEX, key.cast()))?
             };
         }
         Ok(())
@@ -227,11 +199,7 @@ impl Sandbox {
     /// What `("x"):upper()` finds stays, whatever is done to `string`.
     fn protect_strings(&self) -> mlua::Result<()> {
         let copy = self.mlua.create_table()?;
-        for pair in self
-            .environment
-            .raw_get::<Table>("string")?
-            .pairs::<String, mlua::Value>()
-        {
+        for pair in self.environment.raw_get::<Table>("string")?.pairs::<String, mlua::Value>() {
             let (name, function) = pair?;
             copy.raw_set(name, function)?;
         }
@@ -252,10 +220,7 @@ impl Sandbox {
         // SAFETY: as for the functions above.
         unsafe {
             metatable.raw_set("__index", self.mlua.create_c_function(base::read_unknown)?)?;
-            metatable.raw_set(
-                "__newindex",
-                self.mlua.create_c_function(base::write_unknown)?,
-            )?;
+            metatable.raw_set("__newindex", self.mlua.create_c_function(base::write_unknown)?)?;
         }
         metatable.raw_set("__metatable", false)?;
         self.environment.set_metatable(Some(metatable))
@@ -292,23 +257,8 @@ const FUNCTIONS: &[(&str, Functions)] = &[
             ("xpcall", coroutines::xpcall),
         ],
     ),
-    (
-        "coroutine",
-        &[
-            ("close", coroutines::close),
-            ("resume", coroutines::resume),
-            ("wrap", coroutines::wrap),
-        ],
-    ),
-    (
-        "log",
-        &[
-            ("debug", log::debug),
-            ("info", log::info),
-            ("warn", log::warn),
-            ("error", log::error),
-        ],
-    ),
+    ("coroutine", &[("close", coroutines::close), ("resume", coroutines::resume), ("wrap", coroutines::wrap)]),
+    ("log", &[("debug", log::debug), ("info", log::info), ("warn", log::warn), ("error", log::error)]),
     (
         "string",
         &[
