@@ -13,11 +13,7 @@ impl Lua {
         self.unlimited(|lua| lua.compile_unlimited(code, scope))
     }
 
-    fn compile_unlimited(
-        &mut self,
-        code: &str,
-        scope: &[(&str, Cell)],
-    ) -> Result<Block, SyntaxError> {
+    fn compile_unlimited(&mut self, code: &str, scope: &[(&str, Cell)]) -> Result<Block, SyntaxError> {
         // SAFETY: nothing runs, and there is no memory limit.
         let (form, uses) = unsafe { source::analyse(self.stack.state(), code)? };
         let bound = self.bind(&uses, scope)?;
@@ -26,32 +22,13 @@ impl Lua {
         let chunk = self.chunks;
         // SAFETY: as before.
         unsafe { source::build(self.stack.state(), code, form, &names, chunk)? };
-        self.stack.join(|name| {
-            bound
-                .iter()
-                .find(|(found, _)| *found == name)
-                .map(|(_, cell)| cell.0)
-        });
+        self.stack.join(|name| bound.iter().find(|(found, _)| *found == name).map(|(_, cell)| cell.0));
         let block = Block(self.stack.keep());
-        let is_written = |name: &str| {
-            uses.iter()
-                .any(|found| found.kind == Kind::Write && found.name == name)
-        };
-        let writes = bound
-            .iter()
-            .filter(|(name, _)| is_written(name))
-            .map(|&(_, cell)| cell)
-            .collect();
+        let is_written = |name: &str| uses.iter().any(|found| found.kind == Kind::Write && found.name == name);
+        let writes = bound.iter().filter(|(name, _)| is_written(name)).map(|&(_, cell)| cell).collect();
         self.note_slot(block.0, Slot::Block { chunk, writes });
         let scope = scope.iter().map(|&(name, _)| name.into()).collect();
-        self.desk.chunks.borrow_mut().insert(
-            chunk,
-            Chunk {
-                block: Some(block),
-                place: None,
-                scope,
-            },
-        );
+        self.desk.chunks.borrow_mut().insert(chunk, Chunk { block: Some(block), place: None, scope });
         Ok(block)
     }
 
@@ -63,8 +40,7 @@ impl Lua {
     ) -> Result<Vec<(&'a str, Cell)>, SyntaxError> {
         let mut bound: Vec<(&str, Cell)> = Vec::new();
         for found in uses {
-            let Some(&(name, cell)) = scope.iter().rev().find(|(name, _)| *name == found.name)
-            else {
+            let Some(&(name, cell)) = scope.iter().rev().find(|(name, _)| *name == found.name) else {
                 self.check_builtin(found)?;
                 continue;
             };
@@ -73,15 +49,8 @@ impl Lua {
             }
             bound.push((name, cell));
             if bound.len() > source::NAMES {
-                let message = format!(
-                    "more than {} variables in one block: move some into a table",
-                    source::NAMES
-                );
-                return Err(SyntaxError {
-                    message,
-                    line: found.line,
-                    token: Some(name.to_owned()),
-                });
+                let message = format!("more than {} variables in one block: move some into a table", source::NAMES);
+                return Err(SyntaxError { message, line: found.line, token: Some(name.to_owned()) });
             }
             if let Slot::Variable { name: known, .. } = &mut self.slots[cell.0 as usize] {
                 known.get_or_insert_with(|| name.into());
@@ -96,15 +65,8 @@ impl Lua {
         if !builtin {
             return Ok(());
         }
-        let message = format!(
-            "'{}' is built in and can't be assigned to; use another name",
-            found.name
-        );
-        Err(SyntaxError {
-            message,
-            line: found.line,
-            token: Some(found.name.clone()),
-        })
+        let message = format!("'{}' is built in and can't be assigned to; use another name", found.name);
+        Err(SyntaxError { message, line: found.line, token: Some(found.name.clone()) })
     }
 
     /// Gives a block up; its number may be used again.
@@ -113,6 +75,7 @@ impl Lua {
             && let Some(chunk) = self.desk.chunks.borrow_mut().get_mut(&chunk)
         {
             chunk.block = None;
+            chunk.scope = Box::default();
         }
         self.note_slot(block.0, Slot::Empty);
         self.stack.release(block.0);

@@ -70,13 +70,7 @@ impl Lua {
     /// # Errors
     /// The call failed.
     pub fn eval(&mut self, block: Block) -> Result<Value, Failure> {
-        self.eval_within(
-            block,
-            Bounds {
-                depth: value::DEPTH,
-                bytes: value::BYTES,
-            },
-        )
+        self.eval_within(block, Bounds { depth: value::DEPTH, bytes: value::BYTES })
     }
 
     pub(super) fn eval_within(&mut self, block: Block, bounds: Bounds) -> Result<Value, Failure> {
@@ -112,10 +106,7 @@ impl Lua {
     }
 
     fn over_time(&self) -> String {
-        format!(
-            "stopped, as it ran for more than {} ms",
-            self.limits.time.as_millis()
-        )
+        format!("stopped, as it ran for more than {} ms", self.limits.time.as_millis())
     }
 
     /// Frees what a call left behind. Where variables keep so much that little else could run, the limit is lifted.
@@ -123,10 +114,7 @@ impl Lua {
         // An error would come from a finalizer, and blocks can't have any.
         let _ = self.sandbox.mlua.gc_collect();
         let kept = self.memory();
-        let mut message = format!(
-            "stopped, as more than {} of memory were in use",
-            mebibytes(self.limits.memory)
-        );
+        let mut message = format!("stopped, as more than {} of memory were in use", mebibytes(self.limits.memory));
         let mut limit = self.limits.memory;
         if kept > limit / 2 {
             limit += kept;
@@ -142,20 +130,11 @@ impl Lua {
     /// The name of the variable that keeps the most.
     fn heaviest(&self) -> Option<&str> {
         let weight = |(slot, name)| (self.stack.weight(slot as u32), name);
-        let named = self
-            .slots
-            .iter()
-            .enumerate()
-            .filter_map(|(slot, kind)| match kind {
-                Slot::Variable {
-                    name: Some(name), ..
-                } => Some((slot, &**name)),
-                _ => None,
-            });
-        named
-            .map(weight)
-            .max_by_key(|(weight, _)| *weight)
-            .map(|(_, name)| name)
+        let named = self.slots.iter().enumerate().filter_map(|(slot, kind)| match kind {
+            Slot::Variable { name: Some(name), .. } => Some((slot, &**name)),
+            _ => None,
+        });
+        named.map(weight).max_by_key(|(weight, _)| *weight).map(|(_, name)| name)
     }
 
     /// Why the last call failed.

@@ -134,15 +134,8 @@ impl Guard {
     ///
     /// # Safety
     /// `coroutine` lives until `f` returns, and `f` raises no error.
-    pub unsafe fn within(
-        &self,
-        coroutine: *mut ffi::lua_State,
-        f: impl FnOnce() -> c_int,
-    ) -> c_int {
-        let mut link = Running {
-            coroutine,
-            outer: self.running.load(Relaxed),
-        };
+    pub unsafe fn within(&self, coroutine: *mut ffi::lua_State, f: impl FnOnce() -> c_int) -> c_int {
+        let mut link = Running { coroutine, outer: self.running.load(Relaxed) };
         self.running.store(&mut link, Relaxed);
         compiler_fence(SeqCst);
         if self.is_over() {
@@ -233,10 +226,7 @@ impl Watchdog {
         GUARDS.set(Arc::as_ptr(&guard).cast_mut());
         handle_signal();
         let watched = guard.clone();
-        let thread = std::thread::Builder::new()
-            .name("lua watchdog".to_owned())
-            .spawn(move || watch(&watched))
-            .ok();
+        let thread = std::thread::Builder::new().name("lua watchdog".to_owned()).spawn(move || watch(&watched)).ok();
         Self { guard, thread }
     }
 

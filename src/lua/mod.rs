@@ -3,6 +3,7 @@
 //!
 //! A variable is an upvalue that blocks share; a block is a function on Lua's stack. Both are what Lua itself is fastest at.
 
+mod base;
 mod blocks;
 mod bounded;
 mod bytecode;
@@ -52,10 +53,7 @@ pub struct Limits {
 
 impl Default for Limits {
     fn default() -> Self {
-        Self {
-            time: Duration::from_millis(250),
-            memory: 64 << 20,
-        }
+        Self { time: Duration::from_millis(250), memory: 64 << 20 }
     }
 }
 
@@ -105,14 +103,8 @@ pub enum Num {
 /// What is known of a slot of the stack.
 enum Slot {
     Empty,
-    Variable {
-        seen: Fingerprint,
-        name: Option<Box<str>>,
-    },
-    Block {
-        chunk: u32,
-        writes: Box<[Cell]>,
-    },
+    Variable { seen: Fingerprint, name: Option<Box<str>> },
+    Block { chunk: u32, writes: Box<[Cell]> },
 }
 
 /// One interpreter, owned by one thread.
@@ -147,16 +139,7 @@ impl Lua {
         let stack = Stack::new(&sandbox.mlua, guard.clone())?;
         sandbox.mlua.set_memory_limit(limits.memory)?;
         let watchdog = Watchdog::new(guard, stack.state());
-        Ok(Self {
-            watchdog,
-            stack,
-            slots: Vec::new(),
-            chunks: 0,
-            failure: None,
-            limits,
-            desk,
-            sandbox,
-        })
+        Ok(Self { watchdog, stack, slots: Vec::new(), chunks: 0, failure: None, limits, desk, sandbox })
     }
 
     /// Does what Lua itself needs memory for, whatever variables hold.

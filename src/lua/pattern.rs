@@ -56,15 +56,7 @@ type Matched = Result<Option<usize>, Complaint>;
 impl<'a> Matcher<'a> {
     /// `stop` is asked now and then whether to give up.
     pub fn new(subject: &'a [u8], pattern: &'a [u8], stop: &'a dyn Fn() -> bool) -> Self {
-        Self {
-            subject,
-            pattern,
-            stop,
-            steps: 0,
-            depth: 0,
-            level: 0,
-            captures: [(0, Length::Unfinished); CAPTURES],
-        }
+        Self { subject, pattern, stop, steps: 0, depth: 0, level: 0, captures: [(0, Length::Unfinished); CAPTURES] }
     }
 
     /// The end of the match that begins at `start`.
@@ -82,11 +74,7 @@ impl<'a> Matcher<'a> {
     /// Capture `index`, counted from 0, of a match from `start` to `end`; the whole where there are no captures.
     pub fn capture(&self, index: usize, start: usize, end: usize) -> Result<Caught, Complaint> {
         if index >= self.level {
-            return if index == 0 {
-                Ok(Caught::Text(start, end))
-            } else {
-                Err(Complaint::NoCapture(index + 1))
-            };
+            return if index == 0 { Ok(Caught::Text(start, end)) } else { Err(Complaint::NoCapture(index + 1)) };
         }
         match self.captures[index] {
             (_, Length::Unfinished) => Err(Complaint::Unfinished),
@@ -117,11 +105,7 @@ impl<'a> Matcher<'a> {
             return Ok(());
         }
         self.steps = 0;
-        if (self.stop)() {
-            Err(Complaint::Stopped)
-        } else {
-            Ok(())
-        }
+        if (self.stop)() { Err(Complaint::Stopped) } else { Ok(()) }
     }
 
     /// The byte of the pattern, nought at its end.
@@ -156,9 +140,7 @@ impl<'a> Matcher<'a> {
                 }
                 (ESCAPE, b'b') => self.balance(s, p + 2)?.map(|s| (s, p + 4)),
                 (ESCAPE, b'f') => self.frontier(s, p + 2)?.map(|p| (s, p)),
-                (ESCAPE, digit) if digit.is_ascii_digit() => {
-                    self.again(s, digit)?.map(|s| (s, p + 2))
-                }
+                (ESCAPE, digit) if digit.is_ascii_digit() => self.again(s, digit)?.map(|s| (s, p + 2)),
                 _ => {
                     let end = self.class_end(p)?;
                     match (self.at(end), self.one(s, p, end)?) {
@@ -222,9 +204,7 @@ impl<'a> Matcher<'a> {
     }
 
     fn close(&mut self, s: usize, p: usize) -> Matched {
-        let open = self.captures[..self.level]
-            .iter()
-            .rposition(|(_, length)| *length == Length::Unfinished);
+        let open = self.captures[..self.level].iter().rposition(|(_, length)| *length == Length::Unfinished);
         let open = open.ok_or(Complaint::NothingToClose)?;
         self.captures[open].1 = Length::Bytes(s - self.captures[open].0);
         let found = self.find(s, p)?;
@@ -274,9 +254,7 @@ impl<'a> Matcher<'a> {
     fn again(&mut self, s: usize, digit: u8) -> Matched {
         let number = usize::from(digit - b'0');
         let known = number.checked_sub(1).filter(|index| *index < self.level);
-        let (from, length) = known
-            .map(|index| self.captures[index])
-            .ok_or(Complaint::NoCapture(number))?;
+        let (from, length) = known.map(|index| self.captures[index]).ok_or(Complaint::NoCapture(number))?;
         match length {
             Length::Unfinished => Err(Complaint::NoCapture(number)),
             Length::Position => Ok(None),

@@ -46,11 +46,7 @@ unsafe fn complain(state: *mut ffi::lua_State, complaint: Complaint) -> ! {
         Complaint::NoCapture(_) => c"invalid capture index %%%d",
         Complaint::Stopped => c"",
     };
-    let index = if let Complaint::NoCapture(index) = complaint {
-        index as c_int
-    } else {
-        0
-    };
+    let index = if let Complaint::NoCapture(index) = complaint { index as c_int } else { 0 };
     unsafe {
         if complaint == Complaint::Stopped {
             guard::raise(state);
@@ -73,12 +69,7 @@ unsafe fn push_bytes(state: *mut ffi::lua_State, bytes: &[u8]) {
     unsafe { ffi::lua_pushlstring(state, bytes.as_ptr().cast(), bytes.len()) };
 }
 
-unsafe fn push_capture(
-    state: *mut ffi::lua_State,
-    matcher: &Matcher,
-    index: usize,
-    whole: (usize, usize),
-) {
+unsafe fn push_capture(state: *mut ffi::lua_State, matcher: &Matcher, index: usize, whole: (usize, usize)) {
     unsafe {
         match unless_wrong(state, matcher.capture(index, whole.0, whole.1)) {
             Caught::Text(from, to) => push_bytes(state, &matcher.subject[from..to]),
@@ -88,12 +79,7 @@ unsafe fn push_capture(
 }
 
 /// Pushes the first `count` captures.
-unsafe fn push_captures(
-    state: *mut ffi::lua_State,
-    matcher: &Matcher,
-    count: usize,
-    whole: (usize, usize),
-) -> c_int {
+unsafe fn push_captures(state: *mut ffi::lua_State, matcher: &Matcher, count: usize, whole: (usize, usize)) -> c_int {
     unsafe {
         ffi::luaL_checkstack(state, count as c_int, c"too many captures".as_ptr());
         for index in 0..count {
@@ -112,16 +98,8 @@ fn split_anchor(pattern: &[u8]) -> (&[u8], bool) {
 }
 
 /// The first match from `start` on.
-fn first(
-    matcher: &mut Matcher,
-    start: usize,
-    anchored: bool,
-) -> Result<Option<(usize, usize)>, Complaint> {
-    let last = if anchored {
-        start
-    } else {
-        matcher.subject.len()
-    };
+fn first(matcher: &mut Matcher, start: usize, anchored: bool) -> Result<Option<(usize, usize)>, Complaint> {
+    let last = if anchored { start } else { matcher.subject.len() };
     for at in start..=last {
         if let Some(end) = matcher.match_at(at)? {
             return Ok(Some((at, end)));
@@ -150,11 +128,7 @@ pub(super) unsafe extern "C-unwind" fn find(state: *mut ffi::lua_State) -> c_int
         let Some(whole) = unless_wrong(state, first(&mut matcher, start, anchored)) else {
             return push_nothing(state);
         };
-        let count = if matcher.has_captures() {
-            matcher.values()
-        } else {
-            0
-        };
+        let count = if matcher.has_captures() { matcher.values() } else { 0 };
         push_range(state, whole.0, whole.1) + push_captures(state, &matcher, count, whole)
     }
 }
@@ -205,10 +179,7 @@ pub(super) unsafe extern "C-unwind" fn gmatch(state: *mut ffi::lua_State) -> c_i
 
 unsafe extern "C-unwind" fn gmatch_next(state: *mut ffi::lua_State) -> c_int {
     unsafe {
-        let (subject, pattern) = (
-            argument(state, ffi::lua_upvalueindex(1)),
-            argument(state, ffi::lua_upvalueindex(2)),
-        );
+        let (subject, pattern) = (argument(state, ffi::lua_upvalueindex(1)), argument(state, ffi::lua_upvalueindex(2)));
         let start = ffi::lua_tointeger(state, ffi::lua_upvalueindex(3)) as usize;
         let last = ffi::lua_tointeger(state, ffi::lua_upvalueindex(4));
         let guard = &desk(state).guard;
@@ -236,13 +207,7 @@ struct Buffer(MaybeUninit<ffi::luaL_Buffer>);
 
 impl Buffer {
     unsafe fn add(&mut self, bytes: &[u8]) {
-        unsafe {
-            ffi::luaL_addlstring(
-                self.0.as_mut_ptr(),
-                bytes.as_ptr().cast::<c_char>(),
-                bytes.len(),
-            )
-        };
+        unsafe { ffi::luaL_addlstring(self.0.as_mut_ptr(), bytes.as_ptr().cast::<c_char>(), bytes.len()) };
     }
 
     /// Adds the value on top of the stack.
@@ -256,10 +221,7 @@ pub(super) unsafe extern "C-unwind" fn gsub(state: *mut ffi::lua_State) -> c_int
         let (subject, pattern) = (argument(state, 1), argument(state, 2));
         let kind = ffi::lua_type(state, 3);
         let most = ffi::luaL_optinteger(state, 4, subject.len() as i64 + 1);
-        if !matches!(
-            kind,
-            ffi::LUA_TNUMBER | ffi::LUA_TSTRING | ffi::LUA_TFUNCTION | ffi::LUA_TTABLE
-        ) {
+        if !matches!(kind, ffi::LUA_TNUMBER | ffi::LUA_TSTRING | ffi::LUA_TFUNCTION | ffi::LUA_TTABLE) {
             return wrong_replacement(state);
         }
         let guard = &desk(state).guard;
@@ -296,22 +258,13 @@ pub(super) unsafe extern "C-unwind" fn gsub(state: *mut ffi::lua_State) -> c_int
 unsafe fn wrong_replacement(state: *mut ffi::lua_State) -> c_int {
     unsafe {
         let found = ffi::luaL_typename(state, 3);
-        let message = ffi::lua_pushfstring(
-            state,
-            c"string/function/table expected, got %s".as_ptr(),
-            found,
-        );
+        let message = ffi::lua_pushfstring(state, c"string/function/table expected, got %s".as_ptr(), found);
         ffi::luaL_argerror(state, 3, message)
     }
 }
 
 /// Adds what argument 3 makes of a match.
-unsafe fn replace(
-    state: *mut ffi::lua_State,
-    buffer: &mut Buffer,
-    matcher: &Matcher,
-    whole: (usize, usize),
-) {
+unsafe fn replace(state: *mut ffi::lua_State, buffer: &mut Buffer, matcher: &Matcher, whole: (usize, usize)) {
     unsafe {
         match ffi::lua_type(state, 3) {
             ffi::LUA_TFUNCTION => {
@@ -329,11 +282,7 @@ unsafe fn replace(
             ffi::lua_pop(state, 1);
             buffer.add(&matcher.subject[whole.0..whole.1]);
         } else if ffi::lua_isstring(state, -1) == 0 {
-            ffi::luaL_error(
-                state,
-                c"invalid replacement value (a %s)".as_ptr(),
-                ffi::luaL_typename(state, -1),
-            );
+            ffi::luaL_error(state, c"invalid replacement value (a %s)".as_ptr(), ffi::luaL_typename(state, -1));
         } else {
             buffer.add_value();
         }
@@ -341,12 +290,7 @@ unsafe fn replace(
 }
 
 /// Adds a replacement text, `%1` in it replaced.
-unsafe fn add_form(
-    state: *mut ffi::lua_State,
-    buffer: &mut Buffer,
-    matcher: &Matcher,
-    whole: (usize, usize),
-) {
+unsafe fn add_form(state: *mut ffi::lua_State, buffer: &mut Buffer, matcher: &Matcher, whole: (usize, usize)) {
     unsafe {
         let mut rest = argument(state, 3);
         while let Some(at) = rest.iter().position(|byte| *byte == b'%') {

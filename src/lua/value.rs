@@ -35,32 +35,15 @@ struct Reader {
 /// # Safety
 /// `state` is a live state and `index` a valid index. Raises no error, allocates nothing in Lua.
 pub(super) unsafe fn read(state: *mut ffi::lua_State, index: c_int) -> Value {
-    unsafe {
-        read_within(
-            state,
-            index,
-            Bounds {
-                depth: DEPTH,
-                bytes: BYTES,
-            },
-        )
-    }
+    unsafe { read_within(state, index, Bounds { depth: DEPTH, bytes: BYTES }) }
 }
 
 /// The same with other bounds.
 ///
 /// # Safety
 /// As for `read`.
-pub(super) unsafe fn read_within(
-    state: *mut ffi::lua_State,
-    index: c_int,
-    bounds: Bounds,
-) -> Value {
-    let mut reader = Reader {
-        state,
-        bytes: bounds.bytes,
-        counted: COUNTED,
-    };
+pub(super) unsafe fn read_within(state: *mut ffi::lua_State, index: c_int, bounds: Bounds) -> Value {
+    let mut reader = Reader { state, bytes: bounds.bytes, counted: COUNTED };
     unsafe { reader.value(ffi::lua_absindex(state, index), bounds.depth) }
 }
 
@@ -72,9 +55,7 @@ impl Reader {
             match ffi::lua_type(state, index) {
                 ffi::LUA_TNIL => Value::Null,
                 ffi::LUA_TBOOLEAN => Value::Bool(ffi::lua_toboolean(state, index) != 0),
-                ffi::LUA_TNUMBER if ffi::lua_isinteger(state, index) != 0 => {
-                    ffi::lua_tointeger(state, index).into()
-                }
+                ffi::LUA_TNUMBER if ffi::lua_isinteger(state, index) != 0 => ffi::lua_tointeger(state, index).into(),
                 ffi::LUA_TNUMBER => float(ffi::lua_tonumber(state, index)),
                 ffi::LUA_TSTRING => Value::String(self.string(index)),
                 ffi::LUA_TTABLE => self.table(index, depth),
@@ -140,9 +121,7 @@ impl Reader {
 
     /// Whether the keys are 1..count; an empty table is an object.
     unsafe fn is_array(&self, index: c_int, count: usize) -> bool {
-        count > 0
-            && unsafe { ffi::lua_rawlen(self.state, index) } == count
-            && unsafe { self.has(index, count) }
+        count > 0 && unsafe { ffi::lua_rawlen(self.state, index) } == count && unsafe { self.has(index, count) }
     }
 
     /// With a border at `count` and `count` entries, one missing in between means one somewhere else.
@@ -272,9 +251,7 @@ impl Key {
     unsafe fn read(state: *mut ffi::lua_State) -> Self {
         unsafe {
             match ffi::lua_type(state, -1) {
-                ffi::LUA_TNUMBER if ffi::lua_isinteger(state, -1) != 0 => {
-                    Key::Integer(ffi::lua_tointeger(state, -1))
-                }
+                ffi::LUA_TNUMBER if ffi::lua_isinteger(state, -1) != 0 => Key::Integer(ffi::lua_tointeger(state, -1)),
                 ffi::LUA_TNUMBER => Key::Float(Ordered(ffi::lua_tonumber(state, -1))),
                 ffi::LUA_TSTRING => Key::Text(bytes_at(state, -1).into()),
                 ffi::LUA_TBOOLEAN => Key::Bool(ffi::lua_toboolean(state, -1) != 0),

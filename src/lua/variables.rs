@@ -9,13 +9,7 @@ impl Lua {
     /// A new variable, nil.
     pub fn cell(&mut self) -> Cell {
         let slot = self.unlimited(|lua| lua.stack.make_cell());
-        self.note_slot(
-            slot,
-            Slot::Variable {
-                seen: Fingerprint::NIL,
-                name: None,
-            },
-        );
+        self.note_slot(slot, Slot::Variable { seen: Fingerprint::NIL, name: None });
         Cell(slot)
     }
 

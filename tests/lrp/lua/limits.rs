@@ -6,16 +6,15 @@ use serde_json::json;
 use super::{compile, eval, fail, lua};
 
 /// Little memory, and time enough to use it up.
-const SMALL: Limits = Limits {
-    time: Duration::from_secs(20),
-    memory: 8 << 20,
-};
+const SMALL: Limits = Limits { time: Duration::from_secs(20), memory: 8 << 20 };
 
 /// Ways to run for ever.
 const RUNAWAYS: &[&str] = &[
     "while true do end",
     "::again:: goto again",
     "repeat until false",
+    "pcall(function() while true do end end)",
+    "return pcall(pcall, function() while true do end end)",
     "while true do pcall(function() while true do end end) end",
     "local function f() pcall(f) f() end while true do pcall(f) end",
     "xpcall(function() error('x') end, function() while true do end end)",
@@ -57,16 +56,9 @@ fn whatever_runs_for_ever_is_stopped() {
         let start = Instant::now();
         let failure = fail(&mut lua, code);
         assert_eq!(failure.kind, FailureKind::OverTime, "{code}: {failure:?}");
-        assert!(
-            start.elapsed() < Duration::from_secs(3),
-            "{code} took {:?}",
-            start.elapsed()
-        );
+        assert!(start.elapsed() < Duration::from_secs(3), "{code} took {:?}", start.elapsed());
         assert_eq!(
-            eval(
-                &mut lua,
-                "local c = coroutine.wrap(function() return ('abc'):upper() end) return c()"
-            ),
+            eval(&mut lua, "local c = coroutine.wrap(function() return ('abc'):upper() end) return c()"),
             json!("ABC"),
             "{code}"
         );
@@ -88,13 +80,7 @@ fn what_could_loop_in_c_is_refused() {
         assert_ne!(failure.kind, FailureKind::OverTime, "{code}");
     }
     assert_eq!(eval(&mut lua, "string.rep('', 1 << 60)"), json!(""));
-    assert_eq!(
-        eval(
-            &mut lua,
-            "table.concat(table.move({1, 2, 3}, 1, 3, 2), ' ')"
-        ),
-        json!("1 1 2 3")
-    );
+    assert_eq!(eval(&mut lua, "table.concat(table.move({1, 2, 3}, 1, 3, 2), ' ')"), json!("1 1 2 3"));
 }
 
 #[test]
@@ -110,10 +96,7 @@ fn a_stopped_block_tells_its_line() {
 #[test]
 fn a_block_within_its_time_is_left_alone_after_one_that_was_not() {
     let mut lua = lua();
-    let good = compile(
-        &mut lua,
-        "local n = 0 for i = 1, 1000 do n = n + i end return n",
-    );
+    let good = compile(&mut lua, "local n = 0 for i = 1, 1000 do n = n + i end return n");
     for _ in 0..5 {
         fail(&mut lua, "while true do end");
         for _ in 0..50 {
@@ -130,7 +113,9 @@ fn a_coroutine_that_was_stopped_elsewhere_can_go_on() {
     let start = "kept = coroutine.wrap(function() while true do coroutine.yield(1) end end) while true do kept() end";
     let start = lua.compile(start, &scope).unwrap();
     assert_eq!(lua.run(start), Ran::Failed);
-    let again = lua.compile("kept = coroutine.wrap(function() coroutine.yield(1) return 2 end) kept() return kept()", &scope).unwrap();
+    let again = lua
+        .compile("kept = coroutine.wrap(function() coroutine.yield(1) return 2 end) kept() return kept()", &scope)
+        .unwrap();
     assert_eq!(lua.eval(again), Ok(json!(2)));
 }
 
@@ -144,10 +129,7 @@ fn memory_is_limited() {
         let mut lua = Lua::new(SMALL, Access::Sandboxed, 1);
         let failure = fail(&mut lua, code);
         assert_eq!(failure.kind, FailureKind::OverMemory, "{code}: {failure:?}");
-        assert_eq!(
-            failure.message,
-            "stopped, as more than 8 MiB of memory were in use"
-        );
+        assert_eq!(failure.message, "stopped, as more than 8 MiB of memory were in use");
         assert!(lua.memory() < 4 << 20, "{code}");
         assert_eq!(eval(&mut lua, "#('x'):rep(1000000)"), json!(1_000_000));
     }
@@ -158,63 +140,28 @@ fn a_variable_that_keeps_too_much_stops_no_other_block() {
     let mut lua = Lua::new(SMALL, Access::Sandboxed, 1);
     let (small, big) = (lua.cell(), lua.cell());
     let scope = [("small", small), ("big", big)];
-    let grow = lua
-        .compile(
-            "small = {1} big = big or {} while true do big[#big + 1] = {#big} end",
-            &scope,
-        )
-        .unwrap();
+    let grow = lua.compile("small = {1} big = big or {} while true do big[#big + 1] = {#big} end", &scope).unwrap();
     assert_eq!(lua.run(grow), Ran::Failed);
     let failure = lua.take_failure();
     assert_eq!(failure.kind, FailureKind::OverMemory);
-    assert!(
-        failure.message.ends_with("most of it 'big'"),
-        "{}",
-        failure.message
-    );
-    let other = lua
-        .compile(
-            "local t = {} for i = 1, 10000 do t[i] = {i} end return #t",
-            &scope,
-        )
-        .unwrap();
+    assert!(failure.message.ends_with("most of it 'big'"), "{}", failure.message);
+    let other = lua.compile("local t = {} for i = 1, 10000 do t[i] = {i} end return #t", &scope).unwrap();
     assert_eq!(lua.eval(other), Ok(json!(10_000)));
 }
 
 #[test]
 fn deep_recursion_is_an_error() {
-    let mut lua = Lua::new(
-        Limits {
-            time: Duration::from_secs(20),
-            memory: 512 << 20,
-        },
-        Access::Sandboxed,
-        1,
-    );
-    let failure = fail(
-        &mut lua,
-        "local function f() return 1 + f() end\nreturn f()",
-    );
+    let mut lua = Lua::new(Limits { time: Duration::from_secs(20), memory: 512 << 20 }, Access::Sandboxed, 1);
+    let failure = fail(&mut lua, "local function f() return 1 + f() end\nreturn f()");
     assert_eq!((failure.kind, failure.line), (FailureKind::Runtime, 1));
-    assert!(
-        failure.message.starts_with("stack overflow"),
-        "{}",
-        failure.message
-    );
-    assert!(
-        !failure.message.contains("traceback"),
-        "{}",
-        failure.message
-    );
+    assert!(failure.message.starts_with("stack overflow"), "{}", failure.message);
+    assert!(!failure.message.contains("traceback"), "{}", failure.message);
 }
 
 #[test]
 fn failing_calls_leave_nothing_behind() {
     let mut lua = lua();
-    let (bad, good) = (
-        compile(&mut lua, "error({1})"),
-        compile(&mut lua, "return 1, 2, 3"),
-    );
+    let (bad, good) = (compile(&mut lua, "error({1})"), compile(&mut lua, "return 1, 2, 3"));
     for _ in 0..2_000 {
         assert_eq!(lua.run(bad), Ran::Failed);
         assert_eq!(lua.test(bad), Test::Failed);
@@ -244,4 +191,30 @@ fn another_thread_sees_a_block_that_can_not_be_stopped() {
     let block = compile(&mut lua, "stuck()");
     assert_eq!(lua.run(block), Ran::Failed);
     assert_eq!(lua.take_failure().kind, FailureKind::OverTime);
+}
+
+#[test]
+fn only_what_ran_for_too_long_is_stopped() {
+    let limit = Duration::from_millis(2);
+    let mut lua = Lua::new(Limits { time: limit, ..Limits::default() }, Access::Sandboxed, 1);
+    let count = lua.cell();
+    let bodies = [
+        "for i = 1, count do pcall(math.abs, i) end",
+        "local c = coroutine.wrap(function() while true do coroutine.yield() end end) for i = 1, count do c() end",
+        "for i = 1, count do coroutine.resume(coroutine.create(function() pcall(error) end)) end",
+        "local s = ('ab'):rep(count // 10) return s:gsub('a+', '%0')",
+    ];
+    let blocks = bodies.map(|body| lua.compile(body, &[("count", count)]).unwrap());
+    for round in 0..200_u64 {
+        for block in blocks {
+            lua.set(count, &json!(round * round * 7919 % 40_000));
+            let start = Instant::now();
+            let ran = lua.run(block);
+            let took = start.elapsed();
+            if ran == Ran::Failed {
+                assert_eq!(lua.take_failure().kind, FailureKind::OverTime);
+                assert!(took >= limit, "stopped after {took:?}");
+            }
+        }
+    }
 }

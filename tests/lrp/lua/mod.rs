@@ -14,14 +14,7 @@ use serde_json::Value;
 
 /// An interpreter in which runaway blocks are stopped soon.
 fn lua() -> Lua {
-    Lua::new(
-        Limits {
-            time: Duration::from_millis(20),
-            ..Limits::default()
-        },
-        Access::Sandboxed,
-        7,
-    )
+    Lua::new(Limits { time: Duration::from_millis(20), ..Limits::default() }, Access::Sandboxed, 7)
 }
 
 fn compile(lua: &mut Lua, code: &str) -> Block {

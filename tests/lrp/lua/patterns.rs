@@ -36,13 +36,8 @@ fn patterns() -> impl Strategy<Value = String> {
         3 => prop::sample::select(vec!["(", ")", "()", "$", "^", "-", "\0", "é"]).prop_map(str::to_owned),
     ];
     let suffix = prop::sample::select(vec!["", "", "", "*", "+", "-", "?"]);
-    ("\\^?", prop::collection::vec((item, suffix), 0..7)).prop_map(|(anchor, items)| {
-        anchor
-            + &items
-                .into_iter()
-                .map(|(item, suffix)| item + suffix)
-                .collect::<String>()
-    })
+    ("\\^?", prop::collection::vec((item, suffix), 0..7))
+        .prop_map(|(anchor, items)| anchor + &items.into_iter().map(|(item, suffix)| item + suffix).collect::<String>())
 }
 
 proptest! {
@@ -67,10 +62,7 @@ proptest! {
 #[test]
 fn many_optional_items_need_no_stack() {
     assert_eq!(
-        super::eval(
-            &mut lua(),
-            "#string.match(('a'):rep(100), ('b?'):rep(50000) .. 'a+')"
-        ),
+        super::eval(&mut lua(), "#string.match(('a'):rep(100), ('b?'):rep(50000) .. 'a+')"),
         serde_json::json!(100)
     );
 }

@@ -34,28 +34,16 @@ fn values_are_shown_as_json() {
 #[test]
 fn large_values_are_cut() {
     let mut lua = lua();
-    let array = eval(
-        &mut lua,
-        "local t = {} for i = 1, 5000 do t[i] = i end return t",
-    );
+    let array = eval(&mut lua, "local t = {} for i = 1, 5000 do t[i] = i end return t");
     let array = array.as_array().unwrap();
     let left_out = array.last().unwrap()["cut"].as_u64().unwrap() as usize;
     assert_eq!(array.len() - 1 + left_out, 5000);
     assert!(serde_json::to_string(array).unwrap().len() < 2500);
 
-    let object = eval(
-        &mut lua,
-        "local t = {} for i = 1, 5000 do t[('k%04d'):format(i)] = i end return t",
-    );
+    let object = eval(&mut lua, "local t = {} for i = 1, 5000 do t[('k%04d'):format(i)] = i end return t");
     let object = object.as_object().unwrap();
-    assert_eq!(
-        object.len() - 1 + object["cut"].as_u64().unwrap() as usize,
-        5000
-    );
-    assert_eq!(
-        (object["k0001"].clone(), object["k0050"].clone()),
-        (json!(1), json!(50))
-    );
+    assert_eq!(object.len() - 1 + object["cut"].as_u64().unwrap() as usize, 5000);
+    assert_eq!((object["k0001"].clone(), object["k0050"].clone()), (json!(1), json!(50)));
 
     let text = eval(&mut lua, "('x'):rep(5000)");
     assert!(text.as_str().unwrap().chars().count() < 1100 && text.as_str().unwrap().ends_with('…'));
@@ -63,10 +51,7 @@ fn large_values_are_cut() {
         eval(&mut lua, "local t = {} t.t = t return t"),
         json!({ "t": { "t": { "t": { "t": { "cut": 1 } } } } })
     );
-    eval(
-        &mut lua,
-        "local t = {} for i = 1, 3000 do t['k' .. i] = t end return t",
-    );
+    eval(&mut lua, "local t = {} for i = 1, 3000 do t['k' .. i] = t end return t");
 }
 
 #[test]
