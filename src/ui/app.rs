@@ -25,7 +25,7 @@ use super::action;
 use super::key::Key;
 use super::panes::diagram::Diagram;
 use super::layout::{Extent, Figure, Layout, Pane, Simulated, Wish};
-use super::scope;
+use super::scope::Listing;
 use super::theme::Theme;
 use super::tree;
 use super::view::{Path, View};
@@ -258,8 +258,8 @@ impl App {
         self.program().map_or_else(Vec::new, |program| tree::rows(program, &self.folded))
     }
 
-    pub fn values(&self) -> Vec<scope::Row> {
-        scope::rows(&self.view, self.machine())
+    pub fn values(&self) -> Listing {
+        Listing::new(&self.view, self.machine())
     }
 
     pub fn tree_top(&self) -> usize {

@@ -2,7 +2,6 @@
 
 mod frames;
 mod graph;
-mod program;
 mod story;
 mod tracer;
 mod lua;

@@ -5,9 +5,17 @@ use std::sync::Arc;
 use lrp::model::Program;
 use lrp::runtime::record::*;
 use lrp::runtime::time::Time;
+use lrp::session::compile::Compiler;
+use lrp::syntax::Source;
 use serde_json::{Value, json};
 
-use crate::program::{LINE_FOLLOWER, program};
+pub const LINE_FOLLOWER: &str = include_str!("line_follower.lrp");
+
+/// A program named `line_follower.lrp`.
+pub fn program(text: &str) -> Arc<Program> {
+    let compiled = Compiler::new(Vec::new()).compile(Source::new("line_follower.lrp", text));
+    Arc::new(compiled.unwrap_or_else(|rejected| panic!("{:?}", rejected.diagnostics)))
+}
 
 /// Milliseconds of a step.
 const PERIOD: f64 = 100.0;

@@ -52,7 +52,7 @@ impl App {
             Pane::Graph => self.go_in_graph(how),
             Pane::Variables => self.go_in_values(how),
             Pane::Log => self.go_in_log(how),
-            Pane::Detail => self.detail_top = self.scrolled(how, self.detail_top, detail::lines(self).len()),
+            Pane::Detail => self.detail_top = self.scrolled(how, self.detail_top, detail::lines(self, self.columns(Pane::Detail)).len()),
             Pane::World => (),
         }
     }
@@ -76,7 +76,7 @@ impl App {
     }
 
     fn go_in_values(&mut self, how: Move) {
-        let rows: Vec<Path> = self.values().iter().filter_map(|row| row.path().cloned()).collect();
+        let rows: Vec<Path> = self.values().rows.iter().filter_map(|row| row.path().cloned()).collect();
         let at = rows.iter().position(|path| Some(path) == self.value.as_ref());
         if let Some(to) = how.from(at, rows.len(), self.page(Pane::Variables)) {
             self.value = Some(rows[to].clone());
@@ -199,6 +199,12 @@ impl App {
         area.map_or(1, |area| usize::from(area.height.saturating_sub(1)))
     }
 
+    /// Columns a pane has.
+    fn columns(&self, pane: Pane) -> u16 {
+        let area = self.layout(self.area()).and_then(|layout| layout.area(pane));
+        area.map_or(0, |area| area.width)
+    }
+
     fn area(&self) -> Rect {
         let Size { width, height } = self.options.size;
         Rect::new(0, 0, width, height)
@@ -209,7 +215,7 @@ impl App {
         let rows = self.tree();
         let at = rows.iter().position(|row| Some(&row.path) == self.selected.as_ref());
         self.tree_top = top_for(self.tree_top, at, rows.len(), self.page(Pane::Machines));
-        let rows = self.values();
+        let rows = self.values().rows;
         let at = rows.iter().position(|row| row.path().is_some() && row.path() == self.value.as_ref());
         self.values_top = top_for(self.values_top, at, rows.len(), self.page(Pane::Variables));
     }

@@ -17,16 +17,20 @@ use crate::ui::view::Variable;
 const VALUE: u16 = 9;
 
 pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
-    let rows = app.values();
-    if rows.is_empty() {
+    let listing = app.values();
+    if listing.rows.is_empty() {
         draw_nothing(app, area, buffer, "No variables, and nothing from a robot.");
     }
-    for (y, row) in (0..area.height).zip(rows.iter().skip(app.values_top())) {
+    let top = app.values_top().min(listing.rows.len());
+    for (y, row) in (0..area.height).zip(&listing.rows[top..]) {
         draw_row(app, row, Pen::new(buffer, area, y));
     }
-    let below = rows.len().saturating_sub(app.values_top() + usize::from(area.height));
+    let below = listing.rows.len().saturating_sub(top + usize::from(area.height));
     let note = if below > 0 { format!("{below} more") } else { String::new() };
-    Title::new(Pane::Variables.title(), note)
+    match listing.scope_at(top) {
+        Some(scope) => Title::new(format!("{}  {scope}", Pane::Variables.title()), note),
+        None => Title::new(Pane::Variables.title(), note),
+    }
 }
 
 fn draw_row(app: &App, row: &Row, mut pen: Pen) {
@@ -44,20 +48,28 @@ fn draw_row(app: &App, row: &Row, mut pen: Pen) {
                 draw_variable(app, variable, &mut pen);
             }
         }
-        Row::Field { name, value, at, way, .. } => {
-            let age = match way {
-                Way::Input => age(app.view().t.since(*at)),
-                Way::Output => String::new(),
-            };
-            let arrow = if *way == Way::Output { "→" } else { " " };
-            pen.put(arrow, theme.dim()).column(name, names, theme.normal());
-            pen.right_column(&age, 8, theme.dim());
+        Row::Field { name, value, at, .. } => {
+            pen.put(" ", theme.normal()).column(name, names, theme.normal());
+            draw_age(app, *at, &mut pen);
             draw_value(app, value, theme.normal(), &mut pen);
+        }
+        Row::Message { name, value, at, way, .. } => {
+            let arrow = if *way == Way::Output { "→" } else { " " };
+            pen.put(arrow, theme.dim()).put(name, theme.normal()).put("  ", theme.normal());
+            if *way == Way::Input {
+                draw_age(app, *at, &mut pen);
+            }
+            pen.put(&format::message(value), theme.normal());
         }
     }
     if selected && app.focus() == Pane::Variables {
         pen.wash(theme.selected());
     }
+}
+
+fn draw_age(app: &App, at: Time, pen: &mut Pen) {
+    let age = format::duration(app.view().t.since(at).ms());
+    pen.right_column(&age, 8, app.theme().dim());
 }
 
 fn draw_variable(app: &App, variable: &Variable, pen: &mut Pen) {
@@ -106,8 +118,4 @@ fn aside(variable: &Variable) -> Aside<'_> {
         _ if variable.history.len() > 1 => Aside::Moved,
         _ => Aside::Nothing,
     }
-}
-
-fn age(age: Time) -> String {
-    format::duration(age.ms())
 }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 use serde_json::Value;
 
 use super::problem::{Origin, Problem};
+use super::mode::is_own_doing;
 use super::{Edit, Kind, Message, Mode, Path, TAKEN_KEPT, View, World, name, owner, within};
 use crate::model::Program;
 use crate::runtime::command::Command;
@@ -190,6 +191,9 @@ impl View {
     }
 
     fn pause(&mut self, reason: &str) {
+        if !is_own_doing(reason) {
+            self.journal.note(self.t, format!("paused: {reason}"));
+        }
         if self.mode != Mode::Stopped {
             self.mode = Mode::Paused { reason: reason.into() };
         }

@@ -6,6 +6,7 @@ mod bridge;
 mod edit;
 mod journal;
 mod machine;
+mod mode;
 mod problem;
 mod variable;
 mod world;
@@ -17,6 +18,7 @@ pub use bridge::{Bridge, Message};
 pub use edit::Edit;
 pub use journal::{Entry, Journal, Kind};
 pub use machine::{Machine, State, Timeout};
+pub use mode::{Mode, is_own_doing};
 pub use problem::{Gravity, Problem, ProblemKey};
 pub use variable::Variable;
 pub use world::World;
@@ -59,16 +61,6 @@ pub struct View {
     pub world: Option<World>,
     /// How many times a program was taken over.
     pub loads: u64,
-}
-
-#[derive(Clone, Debug, PartialEq)]
-pub enum Mode {
-    Running,
-    Paused {
-        reason: String,
-    },
-    /// The robot was told to stop; nothing runs until a person resumes.
-    Stopped,
 }
 
 impl View {
