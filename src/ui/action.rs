@@ -204,9 +204,7 @@ pub fn of_key_always(key: Key) -> Option<Action> {
 /// What the footer offers while a pane has the focus, without what is always there (STOP and help).
 pub fn offered(pane: Pane) -> impl Iterator<Item = &'static Entry> {
     let shown = move |entry: &&Entry| {
-        !entry.label.is_empty()
-            && entry.works_in(pane)
-            && !matches!(entry.action, Action::Runstop | Action::Help)
+        !entry.label.is_empty() && entry.works_in(pane) && !matches!(entry.action, Action::Runstop | Action::Help)
     };
     let own = TABLE.iter().filter(shown).filter(|entry| matches!(entry.reach, Reach::Panes(_)));
     let general = TABLE.iter().filter(shown).filter(|entry| !matches!(entry.reach, Reach::Panes(_)));

@@ -23,8 +23,8 @@ pub use typing::Typing;
 use self::follow::Follow;
 use super::action;
 use super::key::Key;
-use super::panes::diagram::Diagram;
 use super::layout::{Extent, Figure, Layout, Pane, Simulated, Wish};
+use super::panes::diagram::Diagram;
 use super::scope::Listing;
 use super::theme::Theme;
 use super::tree;
@@ -106,7 +106,9 @@ type DiagramKey = (u64, MachineId, Size);
 pub enum Overlay {
     Nothing,
     /// From this line on.
-    Help { top: usize },
+    Help {
+        top: usize,
+    },
     Value(Typing),
 }
 

@@ -103,7 +103,13 @@ pub fn number(n: f64) -> String {
         return "0".into();
     }
     if !n.is_finite() {
-        return if n.is_nan() { "nan".into() } else if n > 0.0 { "inf".into() } else { "-inf".into() };
+        return if n.is_nan() {
+            "nan".into()
+        } else if n > 0.0 {
+            "inf".into()
+        } else {
+            "-inf".into()
+        };
     }
     let magnitude = n.abs().log10().floor() as i32;
     if !(-5..9).contains(&magnitude) {
@@ -177,7 +183,8 @@ fn quoted(text: &str) -> String {
 }
 
 fn field(key: &str) -> String {
-    let named = key.chars().enumerate().all(|(i, c)| c == '_' || c.is_ascii_alphabetic() || (i > 0 && c.is_ascii_digit()));
+    let named =
+        key.chars().enumerate().all(|(i, c)| c == '_' || c.is_ascii_alphabetic() || (i > 0 && c.is_ascii_digit()));
     if named && !key.is_empty() { key.into() } else { format!("[{key:?}]") }
 }
 

@@ -3,6 +3,8 @@
 mod frames;
 mod graph;
 mod story;
+mod view;
+mod keys;
 mod tracer;
 mod lua;
 mod editor;

@@ -52,7 +52,10 @@ impl App {
             Pane::Graph => self.go_in_graph(how),
             Pane::Variables => self.go_in_values(how),
             Pane::Log => self.go_in_log(how),
-            Pane::Detail => self.detail_top = self.scrolled(how, self.detail_top, detail::lines(self, self.columns(Pane::Detail)).len()),
+            Pane::Detail => {
+                self.detail_top =
+                    self.scrolled(how, self.detail_top, detail::lines(self, self.columns(Pane::Detail)).len())
+            }
             Pane::World => (),
         }
     }
@@ -171,8 +174,7 @@ impl App {
 
     /// The panes a person can go through with Tab: those seen, and where there is no place for it the graph.
     pub(super) fn next_pane(&mut self, step: isize) {
-        const ROUND: [Pane; 6] =
-            [Pane::Machines, Pane::Graph, Pane::World, Pane::Detail, Pane::Variables, Pane::Log];
+        const ROUND: [Pane; 6] = [Pane::Machines, Pane::Graph, Pane::World, Pane::Detail, Pane::Variables, Pane::Log];
         let seen = self.seen();
         let round: Vec<Pane> = ROUND.into_iter().filter(|pane| seen.contains(pane) || *pane == self.focus).collect();
         let at = round.iter().position(|&pane| pane == self.focus).unwrap_or(0) as isize;

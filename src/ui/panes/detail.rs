@@ -258,7 +258,8 @@ impl Page<'_> {
         };
         let key = &problem.key;
         let heading = format!("{word}[{}]", key.code);
-        self.add_at(Tone::Gravity(problem.gravity), heading, format!("{}:{}:{}", key.file, key.line, key.column));
+        self.add(Tone::Gravity(problem.gravity), heading);
+        self.add_wrapped(Tone::Aside, &format!("{}:{}:{}", key.file, key.line, key.column));
         self.add_wrapped(Tone::Text, &problem.message);
         self.source_line(problem);
         if let Some(help) = &problem.help {
@@ -295,9 +296,10 @@ fn line_of(problem: &Problem) -> String {
 }
 
 fn place(program: &Program, span: Span) -> String {
-    program.sources.get(usize::from(span.file.0)).map_or(String::new(), |source| {
-        format!(":{}", source.line(span.start as usize))
-    })
+    program
+        .sources
+        .get(usize::from(span.file.0))
+        .map_or(String::new(), |source| format!(":{}", source.line(span.start as usize)))
 }
 
 /// The lines of a block without the indentation they share.

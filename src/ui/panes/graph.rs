@@ -10,7 +10,8 @@ use crate::model::{MachineId, Program, StateId};
 use crate::ui::app::App;
 use crate::ui::graph::Part;
 use crate::ui::layout::Pane;
-use crate::ui::view::name;
+use crate::ui::machine_graph;
+use crate::ui::view::{Which, name};
 
 pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
     let Some((program, machine)) = app.program().zip(app.machine()) else {
@@ -35,7 +36,7 @@ struct Brush<'a> {
     diagram: &'a Diagram,
     active: Option<StateId>,
     selected: Option<StateId>,
-    /// Which of the machine's transitions was taken last.
+    /// The edges of the transition taken last.
     last: Option<u32>,
 }
 
@@ -50,7 +51,10 @@ impl<'a> Brush<'a> {
             diagram,
             active: view.active(path).and_then(|state| program.state(state)),
             selected: app.selected().and_then(|path| program.state(path)),
-            last: last.map(|(index, _)| index),
+            last: last.map(|which| match which {
+                Which::Own(index) => index,
+                Which::Exit => machine_graph::EXIT,
+            }),
         }
     }
 

@@ -69,7 +69,7 @@ fn draw_row(app: &App, row: &Row, mut pen: Pen) {
 
 fn draw_age(app: &App, at: Time, pen: &mut Pen) {
     let age = format::duration(app.view().t.since(at).ms());
-    pen.right_column(&age, 8, app.theme().dim());
+    pen.put_right(" ", app.theme().dim()).right_column(&age, 8, app.theme().dim());
 }
 
 fn draw_variable(app: &App, variable: &Variable, pen: &mut Pen) {

@@ -12,5 +12,5 @@ pub enum Mode {
 
 /// A person who pressed the key knows why it is paused.
 pub fn is_own_doing(reason: &str) -> bool {
-    matches!(reason, "" | "command" | "pause" | "paused" | "user" | "step" | "runstop")
+    matches!(reason, "" | "asked for" | "runstop")
 }
