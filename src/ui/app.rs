@@ -31,7 +31,7 @@ use super::tree;
 use super::view::{Path, View};
 use crate::model::{MachineId, Program};
 use crate::runtime::command::Command;
-use crate::runtime::record::{Record, What};
+use crate::runtime::record::{Level, Log, Record, What};
 
 #[derive(Clone, Debug)]
 pub struct Options {
@@ -112,6 +112,11 @@ pub enum Overlay {
     Value(Typing),
 }
 
+/// A command that had no effect comes back as an error from nowhere in the program.
+fn is_refusal(log: &Log) -> bool {
+    log.level == Level::Error && log.state.is_empty() && log.file.is_empty()
+}
+
 impl App {
     pub fn new(options: Options) -> App {
         App {
@@ -149,6 +154,7 @@ impl App {
             What::Enter { state } => self.entered(record.step, state),
             What::Set { var, .. } if self.nudged.as_ref().is_some_and(|(path, _)| path == var) => self.nudged = None,
             What::Resume => self.halted = false,
+            What::Log(log) if is_refusal(log) => self.message = Some(log.message.clone()),
             _ => (),
         }
         self.dirty = true;
@@ -278,8 +284,12 @@ impl App {
 
     /// None where the screen is too small.
     pub fn layout(&self, area: Rect) -> Option<Layout> {
+        Layout::new(area, self.wish())
+    }
+
+    fn wish(&self) -> Wish {
         let simulated = if self.view.world.is_some() { Simulated::World } else { Simulated::Nothing };
-        Layout::new(area, Wish { focus: self.focus, figure: self.figure, extent: self.extent, simulated })
+        Wish { focus: self.focus, figure: self.figure, extent: self.extent, simulated }
     }
 
     /// The drawing of a machine for an area: kept from the last frame where nothing changed.

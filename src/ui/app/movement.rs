@@ -3,7 +3,7 @@
 use ratatui::layout::{Rect, Size};
 
 use super::{App, Overlay};
-use crate::ui::layout::{Extent, Figure, Pane};
+use crate::ui::layout::{Extent, Figure, Layout, Pane, Wish};
 use crate::ui::panes::{detail, help};
 use crate::ui::tree::{self, Element};
 use crate::ui::view::{Path, owner, within};
@@ -193,6 +193,13 @@ impl App {
         };
         let shown = shared.iter().flat_map(|layout| layout.panes.iter().map(|&(pane, _)| pane));
         shown.chain(every).collect()
+    }
+
+    /// The panes that are seen while the machines have the focus.
+    pub(super) fn seen_without_focus(&self) -> Vec<Pane> {
+        let wish = Wish { focus: Pane::Machines, extent: Extent::Shared, ..self.wish() };
+        let layout = Layout::new(self.area(), wish);
+        layout.map_or_else(Vec::new, |layout| layout.panes.iter().map(|&(pane, _)| pane).collect())
     }
 
     /// Rows a pane has for its list.

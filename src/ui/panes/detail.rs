@@ -5,12 +5,12 @@ use ratatui::layout::Rect;
 use ratatui::style::Style;
 
 use super::{Title, draw_nothing};
-use crate::model::{BlockId, Entry, MachineId, Program, Sources, StateId, TransitionKind};
+use crate::model::diff::trigger_text;
+use crate::model::{BlockId, Entry, MachineId, Program, Sources, StateId, TransitionKind, Trigger};
 use crate::syntax::{Source, Span};
 use crate::ui::app::{App, LogRow};
 use crate::ui::format;
 use crate::ui::layout::Pane;
-use crate::ui::machine_graph::label;
 use crate::ui::pen::Pen;
 use crate::ui::scope::Row;
 use crate::ui::tree::{self, Element};
@@ -150,14 +150,23 @@ impl Page<'_> {
         for &id in state.outgoing.iter().chain(&state.exits) {
             let transition = &program[id];
             let form = match (transition.kind, &transition.sources) {
-                (_, Sources::Any) => "*",
+                (TransitionKind::On, Sources::Any) => "* on",
+                (TransitionKind::Ontime, Sources::Any) => "* ontime",
+                (TransitionKind::Eps, Sources::Any) => "* eps",
                 (TransitionKind::On, _) => "on",
                 (TransitionKind::Eps, _) => "eps",
                 (TransitionKind::Ontime, _) => "ontime",
                 (TransitionKind::Exit, _) => "exit",
             };
-            let text = format!("{form} {} → {}", label(program, transition), transition.target_name);
-            self.add_at(Tone::Code, text, place(program, transition.span));
+            let trigger = trigger_text(program, &transition.trigger);
+            let name = transition.name.as_ref().map_or(String::new(), |name| format!("  {name}"));
+            let cause = format!("{form} {trigger}");
+            let text = format!("{} → {}{name}", cause.trim_end(), transition.target_name);
+            self.add_at(Tone::Text, text, place(program, transition.span));
+            if let Trigger::Event(event) = transition.trigger {
+                let code = program[program[event].block].code.trim();
+                self.add(Tone::Aside, format!("  {code}"));
+            }
         }
     }
 
@@ -211,7 +220,12 @@ impl Page<'_> {
                     let text = format!("was {}", format::value(previous));
                     self.add(Tone::Aside, text);
                 }
-                self.add(Tone::Aside, format!("set at {} by {}", format::clock(variable.changed), variable.by));
+                let by = match &*variable.by {
+                    "command" => "by hand",
+                    "init" => "at its beginning",
+                    by => &format!("by {by}"),
+                };
+                self.add_wrapped(Tone::Aside, &format!("set at {} {by}", format::clock(variable.changed)));
                 let history: Vec<f64> = variable.history.iter().copied().collect();
                 self.add(Tone::Text, format::sparkline(&history, 32));
             }

@@ -94,8 +94,10 @@ fn draw_numbers(app: &App, program: &Program, id: StateId, pen: &mut Pen) {
 
 /// `-120 ms` until a timeout, or else how long the state has been active.
 fn time(view: &View, program: &Program, id: StateId) -> String {
-    if let Some(timeout) = view.timeout(program, id) {
-        return format!("-{}", format::duration(timeout.left()));
+    match view.timeout(program, id).map(|timeout| timeout.left()) {
+        Some(left) if left < 0.5 => return "due".into(),
+        Some(left) => return format!("-{}", format::duration(left)),
+        None => (),
     }
     let state = &program[id];
     let active = view.is_active(&state.path);

@@ -23,9 +23,11 @@ pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) {
     pen.put(&format!(" {badge} "), theme.mode(mode));
     pen.column("", 9 - format::width(badge).min(8), theme.normal());
     let clock = format::clock(view.t);
-    pen.column(&rate(app), if wide { 11 } else { 7 }, theme.normal());
+    let narrow = area.width < 100;
+    let pace = if narrow && *mode != Mode::Running { format!("step {}", view.step) } else { rate(app) };
+    pen.column(&pace, if wide { 11 } else { 9 }, theme.normal());
     pen.column(&clock, format::width(&clock).max(6) + 2, theme.normal());
-    if area.width >= 100 {
+    if !narrow {
         pen.column(&format!("step {}", view.step), 14, theme.dim());
     }
     draw_bridges(app, &mut pen);
