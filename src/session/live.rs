@@ -10,6 +10,7 @@ use super::compile::{Compiler, Rejected};
 use super::engine_thread::{Commands, EngineThread, News, Pacing};
 use super::loader::{self, Unreadable};
 use super::robots::{Robots, Workshop};
+use super::trace::Conditions;
 use super::watch::{Saved, Watch, Watched};
 use super::{findings, modules};
 use crate::model::Robot;
@@ -41,6 +42,12 @@ pub struct Setup {
     pub pacing: Pacing,
     /// Chosen on the command line.
     pub robots: Vec<Robot>,
+}
+
+impl Setup {
+    pub fn conditions(&self) -> Conditions {
+        Conditions { rate: self.pacing.rate.hz(), seed: self.options.seed, clock: self.pacing.clock }
+    }
 }
 
 /// Dropping it stops the robots and ends its threads.
@@ -79,7 +86,7 @@ impl Session {
 }
 
 pub fn folder(file: &Path) -> PathBuf {
-    file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_path_buf()
+    file.parent().unwrap_or(Path::new("")).to_path_buf()
 }
 
 /// Compiles beside the engine's thread, which only takes finished programs over.

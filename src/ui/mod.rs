@@ -10,6 +10,7 @@ pub mod graph;
 pub mod input;
 pub mod key;
 pub mod layout;
+pub mod live;
 pub mod machine_graph;
 pub mod panes;
 pub mod pen;

@@ -1,16 +1,17 @@
 //! All integration tests of the package, in one binary.
 
+mod editor;
 mod frames;
 mod graph;
-mod story;
-mod view;
 mod keys;
-mod tracer;
-mod lua;
-mod editor;
 mod loader;
+mod lua;
 mod quiet;
 mod settling;
 mod signals;
+mod story;
+mod syntax;
 mod terminal;
+mod tracer;
+mod view;
 mod watch;
