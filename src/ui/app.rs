@@ -17,6 +17,7 @@ use std::sync::Arc;
 use crossterm::event::{KeyEvent, KeyEventKind};
 use ratatui::layout::{Rect, Size};
 
+pub use movement::top_for;
 pub use reading::{Filter, LogRow, Reading};
 pub use typing::Typing;
 

@@ -17,6 +17,17 @@ pub struct Listing {
     pub first: Option<Path>,
     /// Scopes after the first begin with a heading.
     pub rows: Vec<Row>,
+    /// How many rows at the end are what bridges carry.
+    pub carried: usize,
+}
+
+/// How the rows of a listing share a pane: where they don't all fit, what bridges carry keeps the lower part.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Shares {
+    /// Rows of the listing and rows of the pane for the upper part.
+    pub upper: (usize, usize),
+    /// The same for the lower part.
+    pub lower: (usize, usize),
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -70,6 +81,7 @@ impl Listing {
             }
             listing.add_variables(program, "global", &program.globals);
         }
+        let declared = listing.rows.len();
         for (name, bridge) in &view.bridges {
             if bridge.inputs.is_empty() && bridge.outputs.is_empty() {
                 continue;
@@ -83,7 +95,22 @@ impl Listing {
                 listing.add_message(path, port, &message.value, message.at, Way::Output);
             }
         }
+        listing.carried = listing.rows.len() - declared;
         listing
+    }
+
+    pub fn shares(&self, height: usize) -> Shares {
+        let declared = self.rows.len() - self.carried;
+        if self.rows.len() <= height || declared == 0 {
+            return Shares { upper: (self.rows.len(), height), lower: (0, 0) };
+        }
+        let lower = self.carried.min(height / 2);
+        Shares { upper: (declared, height - lower), lower: (self.carried, lower) }
+    }
+
+    /// The row of a selection.
+    pub fn position(&self, path: Option<&Path>) -> Option<usize> {
+        self.rows.iter().position(|row| path.is_some() && row.path() == path)
     }
 
     /// The scope that the row before `top` belongs to: what a title says of the rows that are seen.

@@ -155,6 +155,14 @@ fn the_world_in_place_of_the_drawing() {
 }
 
 #[test]
+fn an_active_state_out_of_sight_is_named() {
+    let mut story = Story::searching();
+    story.at(90).take("follower", "follower/looking", "follower/bumpturn", None, "ontime", 5);
+    let app = screen(80, 12, &story);
+    check("out_of_sight_80x12", &app);
+}
+
+#[test]
 fn a_value_being_typed() {
     check_one("typing_80x24", &Story::searching(), "3 Down Down e");
 }

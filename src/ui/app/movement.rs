@@ -224,8 +224,9 @@ impl App {
         let rows = self.tree();
         let at = rows.iter().position(|row| Some(&row.path) == self.selected.as_ref());
         self.tree_top = top_for(self.tree_top, at, rows.len(), self.page(Pane::Machines));
-        let rows = self.values().rows;
-        let at = rows.iter().position(|row| row.path().is_some() && row.path() == self.value.as_ref());
-        self.values_top = top_for(self.values_top, at, rows.len(), self.page(Pane::Variables));
+        let listing = self.values();
+        let (rows, height) = listing.shares(self.page(Pane::Variables)).upper;
+        let at = listing.position(self.value.as_ref()).filter(|&at| at < rows);
+        self.values_top = top_for(self.values_top, at, rows, height);
     }
 }

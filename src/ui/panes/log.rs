@@ -65,7 +65,9 @@ fn draw_entry(app: &App, entry: &Entry, pen: &mut Pen) {
 fn draw_log(app: &App, entry: &Entry, level: Level, pen: &mut Pen) {
     let theme = app.theme();
     let at = entry.place.as_ref().map_or(String::new(), |(_, number)| line(*number));
-    pen.right_column(&at, 5, theme.dim());
+    if !at.is_empty() {
+        pen.right_column(&at, 5, theme.dim());
+    }
     let (word, text) = match level {
         Level::Error => ("error", theme.normal()),
         Level::Warn => ("warn", theme.normal()),

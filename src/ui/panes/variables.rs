@@ -6,11 +6,11 @@ use serde_json::Value;
 
 use super::{Title, draw_nothing};
 use crate::runtime::time::Time;
-use crate::ui::app::App;
+use crate::ui::app::{App, top_for};
 use crate::ui::format;
 use crate::ui::layout::Pane;
 use crate::ui::pen::Pen;
-use crate::ui::scope::{Row, Way};
+use crate::ui::scope::{Row, Shares, Way};
 use crate::ui::view::Variable;
 
 /// Columns of a number.
@@ -21,12 +21,18 @@ pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
     if listing.rows.is_empty() {
         draw_nothing(app, area, buffer, "No variables, and nothing from a robot.");
     }
-    let top = app.values_top().min(listing.rows.len());
-    for (y, row) in (0..area.height).zip(&listing.rows[top..]) {
+    let Shares { upper: (rows, height), lower: (carried, below) } = listing.shares(usize::from(area.height));
+    let at = listing.position(app.selected_value());
+    let top = app.values_top().min(rows);
+    for (y, row) in (0..height as u16).zip(&listing.rows[top..rows]) {
         draw_row(app, row, Pen::new(buffer, area, y));
     }
-    let below = listing.rows.len().saturating_sub(top + usize::from(area.height));
-    let note = if below > 0 { format!("{below} more") } else { String::new() };
+    let first = rows + top_for(0, at.and_then(|at| at.checked_sub(rows)), carried, below);
+    for (y, row) in (height as u16..area.height).zip(&listing.rows[first..]) {
+        draw_row(app, row, Pen::new(buffer, area, y));
+    }
+    let hidden = rows.saturating_sub(top + height) + carried.saturating_sub(first - rows + below);
+    let note = if hidden > 0 { format!("{hidden} more") } else { String::new() };
     match listing.scope_at(top) {
         Some(scope) => Title::new(format!("{}  {scope}", Pane::Variables.title()), note),
         None => Title::new(Pane::Variables.title(), note),
@@ -80,7 +86,7 @@ fn draw_variable(app: &App, variable: &Variable, pen: &mut Pen) {
     };
     let fresh = variable.is_fresh(app.view().t);
     draw_value(app, value, if fresh { theme.fresh() } else { theme.normal() }, pen);
-    let (aside, room) = (aside(variable), pen.room().saturating_sub(2));
+    let (aside, room) = (aside(variable), pen.room().saturating_sub(3));
     match aside {
         Aside::Was(previous) if room >= 5 => {
             pen.put("  was ", theme.dim()).put(&format::value(previous), theme.dim());

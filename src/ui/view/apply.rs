@@ -10,6 +10,7 @@ use super::{Edit, Kind, Message, Mode, Path, TAKEN_KEPT, View, Which, World, nam
 use crate::model::Program;
 use crate::runtime::command::Command;
 use crate::runtime::record::{BridgeState, Fault, Finding, Forced, Health, Load, Log, Record, Taken, What};
+use crate::ui::format;
 
 impl View {
     pub fn apply(&mut self, record: &Record) {
@@ -31,12 +32,12 @@ impl View {
             What::Log(log) => self.log(log),
             What::Error(fault) => self.fault(fault),
             What::Pause { reason } => self.pause(reason),
-            What::Resume => self.mode = Mode::Running,
+            What::Resume => (self.mode, self.actual) = (Mode::Running, None),
             What::Force { state, how } => self.force(state, *how),
             What::Restart { reason } => self.restart(reason),
             What::Stop { reason } => self.stop(reason),
             What::Skip { steps } => self.skipped += steps,
-            What::Status { rate, late } => (self.actual, self.late) = (Some(*rate), *late),
+            What::Status { rate, late } => self.status(*rate, *late),
             What::Bridge(state) => self.bridge(state),
         }
     }
@@ -74,14 +75,13 @@ impl View {
 
     fn command(&mut self, command: &Command) {
         match command {
-            Command::Rate { hz } => self.rate = *hz,
+            Command::Rate { hz } => (self.rate, self.actual) = (*hz, None),
             Command::Runstop => self.mode = Mode::Stopped,
             Command::PutAtStart { bridge } => {
                 if let Some(world) = self.world.as_mut().filter(|world| *world.bridge == **bridge) {
                     world.trail.clear();
                 }
             }
-            Command::Set { var, value } => self.journal.note(self.t, format!("{var} set to {value}")),
             _ => (),
         }
     }
@@ -156,6 +156,9 @@ impl View {
     fn set(&mut self, var: &Path, value: &Value, by: &Path) {
         let t = self.t;
         self.variables.entry(var.clone()).or_default().set(value, by, t);
+        if **by == *"command" {
+            self.journal.note(t, format!("{} set to {}", name(var), format::value(value)));
+        }
     }
 
     fn input(&mut self, bridge: &Path, name: &Path, value: &Value) {
@@ -226,6 +229,13 @@ impl View {
         self.machines.clear();
         self.states.clear();
         self.variables.values_mut().for_each(super::Variable::forget);
+    }
+
+    /// Half a second holds few steps, so the rate is evened out.
+    fn status(&mut self, rate: f64, late: f64) {
+        let before = self.actual.filter(|before| before.is_finite());
+        self.actual = Some(before.map_or(rate, |before| before * 0.75 + rate * 0.25));
+        self.late = late;
     }
 
     fn bridge(&mut self, state: &BridgeState) {

@@ -37,7 +37,7 @@ pub struct View {
     pub mode: Mode,
     /// Steps a second, as asked for; 0: as fast as possible.
     pub rate: f64,
-    /// Steps a second, as they are.
+    /// Steps a second as they are, evened out over some seconds.
     pub actual: Option<f64>,
     /// How late the last step was, ms.
     pub late: f64,
