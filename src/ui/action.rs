@@ -82,7 +82,7 @@ pub struct Entry {
     pub reach: Reach,
 }
 
-const STATES: Reach = Reach::Panes(&[Pane::Machines, Pane::Graph, Pane::Detail]);
+const STATES: Reach = Reach::Panes(&[Pane::Machines, Pane::Graph]);
 const TREE: Reach = Reach::Panes(&[Pane::Machines]);
 const VALUES: Reach = Reach::Panes(&[Pane::Variables]);
 const LOG: Reach = Reach::Panes(&[Pane::Log]);
@@ -103,7 +103,7 @@ table! {
     Action::PutAtStart, "put-at-start", ["b"], "", "put the simulated robot back at its start", Robot, Reach::Screen;
 
     Action::Pause, "pause", ["Space"], "pause", "pause, or run on", Program, Reach::Screen;
-    Action::Step, "step", ["s"], "step", "make one step, then pause", Program, Reach::Screen;
+    Action::Step, "step", ["s"], "step", "make one step; while it runs, pause", Program, Reach::Screen;
     Action::Faster, "faster", ["+", "="], "", "more steps a second", Program, Reach::Screen;
     Action::Slower, "slower", ["-"], "", "fewer steps a second", Program, Reach::Screen;
     Action::TransitionTo, "transition-to", ["t"], "go to state", "go to the selected state: its actions run", Program, STATES;
