@@ -51,11 +51,6 @@ impl Theme {
         Style::new().add_modifier(Modifier::REVERSED)
     }
 
-    /// The row a person left in another pane.
-    pub fn held(self) -> Style {
-        Style::new().add_modifier(Modifier::UNDERLINED)
-    }
-
     pub fn active(self) -> Style {
         self.bold().patch(self.colour(Color::Green))
     }
