@@ -3,9 +3,9 @@
 mod editor;
 mod frames;
 mod graph;
+mod keys;
 mod loader;
 mod lua;
-mod program;
 mod quiet;
 mod settling;
 mod signals;
@@ -13,4 +13,5 @@ mod story;
 mod syntax;
 mod terminal;
 mod tracer;
+mod view;
 mod watch;
