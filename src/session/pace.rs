@@ -25,6 +25,13 @@ impl Rate {
     }
 }
 
+/// Ten steps a second.
+impl Default for Rate {
+    fn default() -> Rate {
+        Rate(Some(10.0))
+    }
+}
+
 /// Program time as steps of one period each, counted from where the rate was last set so that nothing drifts.
 #[derive(Debug)]
 pub struct Pace {
