@@ -217,7 +217,7 @@ impl<'n, N: Fn(News)> Loop<'n, N> {
             Command::Resume => self.pace.resume(real),
             Command::Step if self.loaded && self.driver.engine().is_paused() => {
                 let _ = self.driver.command(command, &mut |record| self.batch.push(record));
-                let now = self.pace.next();
+                let now = self.pace.make();
                 self.driver.step(now, &mut |record| self.batch.push(record));
                 return;
             }
@@ -236,7 +236,7 @@ impl<'n, N: Fn(News)> Loop<'n, N> {
     /// Whether the run is over.
     fn step(&mut self) -> bool {
         let due = match self.pacing.clock {
-            Clock::Virtual => Due { now: self.pace.next(), skipped: 0, late: Duration::ZERO },
+            Clock::Virtual => Due { now: self.pace.make(), skipped: 0, late: Duration::ZERO },
             Clock::Real => self.pace.take(self.started.elapsed()),
         };
         if self.pacing.until.is_some_and(|until| due.now > until) {

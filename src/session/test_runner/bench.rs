@@ -80,7 +80,7 @@ impl Bench {
         let mut driver = Driver::new(runtime::Options { seed: options.seed, ..runtime::Options::default() }, workshop);
         driver.engine_mut().library(library);
         let mut pace = Pace::new(options.rate, std::time::Duration::ZERO);
-        let due = pace.next();
+        let due = pace.make();
         let mut bench =
             Bench { driver, compiler, world, file, pace, due, clock: Time::ZERO, records: Vec::new(), deadline };
         bench.load(program)?;
@@ -160,7 +160,7 @@ impl Bench {
         let Bench { driver, records, .. } = self;
         driver.step(self.due, &mut |record| records.push(record));
         self.clock = self.due;
-        self.due = self.pace.next();
+        self.due = self.pace.make();
         Ok(())
     }
 
