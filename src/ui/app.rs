@@ -19,7 +19,7 @@ use ratatui::layout::{Rect, Size};
 
 pub use movement::top_for;
 pub use reading::{Filter, LogRow, Reading};
-pub use typing::Typing;
+pub use typing::{Text, Typing};
 
 use self::follow::Follow;
 use super::action;

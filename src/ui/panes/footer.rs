@@ -5,7 +5,7 @@ use ratatui::layout::{Position, Rect};
 use unicode_width::UnicodeWidthChar;
 
 use crate::ui::action::{self, Action};
-use crate::ui::app::{App, Overlay, Typing};
+use crate::ui::app::{App, Overlay, Text, Typing};
 use crate::ui::format;
 use crate::ui::pen::Pen;
 use crate::ui::view::Mode;
@@ -46,7 +46,11 @@ fn draw_typing(app: &App, typing: &Typing, mut pen: Pen, area: Rect) -> Position
     pen.put(&format::fit(&typing.var, pen.room() / 2), theme.bold()).put(" = ", theme.dim());
     let (start, room) = (pen.at(), pen.room().saturating_sub(1));
     let scroll = typing.input.visual_scroll(usize::from(room));
-    pen.put(&after_columns(typing.input.value(), scroll), theme.normal());
+    let style = match typing.text {
+        Text::Present => theme.selected(),
+        Text::Typed => theme.normal(),
+    };
+    pen.put(&after_columns(typing.input.value(), scroll), style);
     let cursor = typing.input.visual_cursor().saturating_sub(scroll) as u16;
     Position::new(start.saturating_add(cursor).min(area.right().saturating_sub(1)), area.y)
 }

@@ -106,11 +106,11 @@ fn draw_numbers(app: &App, program: &Program, id: StateId, pen: &mut Pen) {
     }
 }
 
-/// `-120 ms` until a timeout, or else how long the state has been active.
+/// `120 ms` until a timeout, with its bar, or else how long the state has been active.
 fn time(view: &View, program: &Program, id: StateId) -> String {
     match view.timeout(program, id).map(|timeout| timeout.left()) {
         Some(left) if left < 0.5 => return "due".into(),
-        Some(left) => return format!("-{}", format::duration(left)),
+        Some(left) => return format::duration(left),
         None => (),
     }
     let state = &program[id];
