@@ -67,12 +67,15 @@ fn unknown_name(program: &Program, block: usize, name: &NameUse, access: Access)
 
 pub fn syntax_diagnostic(source: &Source, block: Span, error: &lua::SyntaxError) -> Diagnostic {
     let span = place(source, block, error.line, error.token.as_deref());
+    let message = error.message_in(source.line(block.start as usize) as u32);
     let near = span.start.saturating_sub(block.start) as usize;
-    if let Some(help) = smalltalk(source.slice(block), near) {
-        let message = format!("this looks like Smalltalk; blocks are Lua: {}", error.message);
-        return Diagnostic::error(Code::Smalltalk, span, message).help(help);
+    match smalltalk(source.slice(block), near) {
+        Some(help) => {
+            let message = format!("this looks like Smalltalk; blocks are Lua: {message}");
+            Diagnostic::error(Code::Smalltalk, span, message).help(help)
+        }
+        None => Diagnostic::error(Code::LuaSyntax, span, message),
     }
-    Diagnostic::error(Code::LuaSyntax, span, error.message.clone())
 }
 
 /// What to write in Lua, where a block that doesn't compile has the marks of Smalltalk.

@@ -9,6 +9,7 @@ use super::names::Names;
 use super::program::*;
 use crate::lua::Checker;
 use crate::syntax::ast::{self, Form, MachineItem, StateItem, Tree};
+use crate::syntax::nearest::nearest;
 use crate::syntax::{Code, Diagnostic, Source, Span};
 
 /// A robot chosen on the command line; it takes the place of the program's own bridge of that name.
@@ -28,6 +29,9 @@ pub fn resolve(tree: &Tree, source: Source, robots: &[Robot], checker: &mut Chec
     super::blocks::resolve_blocks(&mut program, checker);
     program
 }
+
+/// Names listed at most where none is near to the one that was meant.
+const LISTED: usize = 8;
 
 /// What is still to be linked refers to the tree.
 #[derive(Default)]
@@ -459,12 +463,16 @@ impl<'t> Resolver<'t> {
     }
 
     fn unknown<'a>(&mut self, code: Code, what: &str, name: &ast::Name, known: impl IntoIterator<Item = &'a str>) {
-        let message = format!("`{}` is not a {what}", name.text).replace("a event", "an event");
-        let mut diagnostic = Diagnostic::error(code, name.span, message);
-        if let Some(near) = crate::syntax::nearest::nearest(&name.text, known) {
-            diagnostic = diagnostic.help(format!("did you mean `{near}`?"));
-        }
-        self.diagnostics.push(diagnostic);
+        let known: Vec<&str> = known.into_iter().collect();
+        let help = match nearest(&name.text, known.iter().copied()) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None if known.is_empty() => "there is none here yet".to_string(),
+            None if known.len() <= LISTED => format!("there is: {}", known.join(", ")),
+            None => format!("there is: {}, and {} more", known[..LISTED].join(", "), known.len() - LISTED),
+        };
+        let article = if what.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
+        let message = format!("`{}` is not {article} {what}", name.text);
+        self.diagnostics.push(Diagnostic::error(code, name.span, message).help(help));
     }
 }
 

@@ -49,6 +49,7 @@ pub fn run(setup: Setup, trace: Option<PathBuf>) -> ExitCode {
                 }
             }
             Event::News(News::Ended(End::Failed(why))) => return fail(&format!("lrp failed and stopped the robot: {why}")),
+            Event::News(News::Stuck) => say(STUCK),
             Event::News(News::Ended(_)) => break,
             Event::Signal(Signal::Interrupt) => {
                 drop(session);
@@ -64,6 +65,9 @@ pub fn run(setup: Setup, trace: Option<PathBuf>) -> ExitCode {
     }
     ExitCode::from(u8::from(outcome.errors))
 }
+
+/// Said when a block can't be stopped.
+pub const STUCK: &str = "a block can't be stopped; the robot was halted, and the program waits for that block";
 
 fn fail(why: &str) -> ExitCode {
     eprintln!("lrp: {why}");

@@ -59,7 +59,7 @@ pub struct Session {
 impl Session {
     /// Starts the program of a file, whether it can be read as one or not: a save can mend it. Fails only where there is
     /// no text to be had.
-    pub fn start(setup: Setup, news: impl Fn(News) + Send + 'static) -> Result<Session, NotStarted> {
+    pub fn start(setup: Setup, news: impl Fn(News) + Clone + Send + 'static) -> Result<Session, NotStarted> {
         let source = match loader::read(&setup.file) {
             Err(Unreadable::Empty { .. }) => Source::new(setup.file.display().to_string(), ""),
             read => read.map_err(NotStarted::Unreadable)?,

@@ -18,6 +18,7 @@ use super::terminal::Screen;
 use super::theme::Theme;
 use crate::runtime::{Command, Record};
 use crate::session::engine_thread::{End, News};
+use crate::session::headless::STUCK;
 use crate::session::live::{Session, Setup};
 use crate::session::signals::{Signal, Signals};
 use crate::session::trace::Trace;
@@ -72,7 +73,7 @@ fn live(setup: Setup, trace: Option<PathBuf>) -> Result<ExitCode, String> {
 }
 
 /// Hands things of one kind on to the loop; when that has ended there is nobody to tell.
-fn send<T: 'static>(happened: &Sender<Happened>, kind: impl Fn(T) -> Happened + Send + 'static) -> impl Fn(T) + Send + 'static {
+fn send<T: 'static>(happened: &Sender<Happened>, kind: impl Fn(T) -> Happened + Clone + Send + 'static) -> impl Fn(T) + Clone + Send + 'static {
     let happened = happened.clone();
     move |thing| drop(happened.send(kind(thing)))
 }
@@ -150,6 +151,11 @@ impl Live {
             Happened::News(News::Records(records)) => {
                 records.iter().for_each(|record| self.record(record));
                 Next::Go
+            }
+            Happened::News(News::Stuck) => {
+                self.app.stopped();
+                self.app.notice(STUCK);
+                Next::Answer
             }
             Happened::News(News::Ended(End::Failed(why))) => {
                 self.failed = Some(format!("something in lrp itself went wrong, and it stopped the robot: {why}"));

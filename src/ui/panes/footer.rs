@@ -29,7 +29,10 @@ pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Option<Position> {
         }
         (Some(typing), None) => Some(draw_typing(app, typing, pen, area)),
         (None, None) => {
-            draw_keys(app, &mut pen);
+            match app.overlay() {
+                Overlay::Help { .. } => draw_key(app, "Esc", "back", &mut pen),
+                Overlay::Nothing | Overlay::Value(_) => draw_keys(app, &mut pen),
+            }
             None
         }
     }
@@ -67,13 +70,23 @@ fn draw_keys(app: &App, pen: &mut Pen) {
         if pen.room() < format::width(&key) + 1 + format::width(label) {
             return;
         }
-        pen.put(&key, theme.key()).put(" ", theme.dim()).put(label, theme.dim()).put("  ", theme.dim());
+        draw_key(app, &key, label, pen);
     }
+}
+
+fn draw_key(app: &App, key: &str, label: &str, pen: &mut Pen) {
+    let theme = app.theme();
+    pen.put(key, theme.key()).put(" ", theme.dim()).put(label, theme.dim()).put("  ", theme.dim());
 }
 
 /// `Space` is a word among words in the footer; `R` and `r` are different keys.
 fn short(key: &str) -> String {
-    if key.chars().count() > 1 { key.to_lowercase() } else { key.into() }
+    match key {
+        "Left" => "←".into(),
+        "Right" => "→".into(),
+        _ if key.chars().count() > 1 => key.to_lowercase(),
+        _ => key.into(),
+    }
 }
 
 fn label(app: &App, entry: &action::Entry) -> &'static str {
