@@ -22,6 +22,8 @@ pub struct Api {
     /// The loaded program's file.
     program: RefCell<Option<PathBuf>>,
     files: Rc<Files>,
+    /// The program's records by kind, as the test sees them: each becomes a table only once.
+    pub told: RefCell<Vec<(String, mlua::Value)>>,
 }
 
 /// Lua files and programs as the test has them.
@@ -36,8 +38,14 @@ struct Files {
 impl Api {
     /// `folder`: the test file's, from which it names files.
     pub fn new(folder: &Path, deadline: Deadline) -> Api {
-        let (bench, program, files) = (RefCell::default(), RefCell::default(), Rc::default());
-        Api { folder: folder.to_path_buf(), deadline, bench, program, files }
+        Api {
+            folder: folder.to_path_buf(),
+            deadline,
+            bench: RefCell::default(),
+            program: RefCell::default(),
+            files: Rc::default(),
+            told: RefCell::default(),
+        }
     }
 
     /// The program under test, if there is one.
@@ -78,6 +86,7 @@ impl Api {
     fn start(&self, file: Source, folder: PathBuf, options: Option<&Table>) -> Result<(), Complaint> {
         self.bench.take();
         self.files.required.take();
+        self.told.take();
         let options = Options::read(options)?;
         let library = library(Rc::clone(&self.files), folder.clone());
         let setting = Setting { file, folder, test_folder: self.folder.clone(), library };

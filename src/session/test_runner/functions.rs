@@ -11,7 +11,7 @@ use super::failure::Complaint;
 use super::message::hint;
 use super::readable::sent;
 use super::value::{source, to_json, to_lua};
-use crate::runtime::{Command, Record, Time};
+use crate::runtime::{Command, Time};
 
 /// The table a test calls `t`.
 pub fn table(lua: &Lua, api: &Rc<Api>) -> mlua::Result<Table> {
@@ -218,9 +218,14 @@ fn records(lua: &Lua, api: &Api, kind: Option<&str>) -> mlua::Result<Vec<Value>>
             Complaint::new(format!("there are no records `{unknown}`; {}", hint(unknown, KINDS.into_iter()))).into()
         );
     }
-    let plain = |record: &Record| Some(json!(record)).filter(|record| kind.is_none_or(|kind| record["kind"] == kind));
-    let records: Vec<_> = api.with(|bench| Ok(bench.records().iter().filter_map(plain).collect()))?;
-    records.iter().map(|record| to_lua(lua, record)).collect()
+    let mut told = api.told.borrow_mut();
+    let new: Vec<_> =
+        api.with(|bench| Ok(bench.records()[told.len()..].iter().map(|record| json!(record)).collect()))?;
+    for record in new {
+        told.push((record["kind"].as_str().unwrap_or_default().to_string(), to_lua(lua, &record)?));
+    }
+    let wanted = told.iter().filter(|(known, _)| kind.is_none_or(|kind| kind == known));
+    Ok(wanted.map(|(_, record)| record.clone()).collect())
 }
 
 fn spelled_out(trouble: &Trouble) -> serde_json::Value {
