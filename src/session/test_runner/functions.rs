@@ -70,7 +70,12 @@ impl Functions<'_> {
             if !matches!(arguments.pop_front(), Some(Value::Table(_))) {
                 return Err(Complaint::new(format!("call it with a colon: `t:{usage}`")).into());
             }
-            let wrong = |error: mlua::Error| Complaint::new(format!("it is called `t:{usage}`; {error}"));
+            let wrong = |error: mlua::Error| match error {
+                mlua::Error::FromLuaConversionError { from, .. } => {
+                    Complaint::new(format!("it is called `t:{usage}`, not with a {from}"))
+                }
+                other => Complaint::new(format!("it is called `t:{usage}`; {other}")),
+            };
             f(lua, &api, A::from_lua_multi(arguments, lua).map_err(wrong)?)
         })?;
         let name = usage.split('(').next().unwrap_or(usage);
@@ -139,18 +144,16 @@ impl Functions<'_> {
     }
 
     fn expecting(&self) -> mlua::Result<()> {
-        self.add(
-            "expect(condition, message)",
-            |_, _, (condition, message): (Value, Option<String>)| match condition {
-                Value::Nil | Value::Boolean(false) => {
-                    let message = message.unwrap_or_else(|| {
-                        format!("expected this, and it is {}", condition.to_string().unwrap_or_default())
-                    });
-                    Err(Complaint::new(message).into())
-                }
-                _ => Ok(()),
-            },
-        )?;
+        self.add("expect(condition, message)", |_, _, (condition, message): (Value, Value)| match condition {
+            Value::Nil | Value::Boolean(false) => {
+                let message = match message {
+                    Value::Nil => format!("expected this, and it is {}", condition.to_string()?),
+                    message => message.to_string()?,
+                };
+                Err(Complaint::new(message).into())
+            }
+            _ => Ok(()),
+        })?;
         self.add("expect_active(path)", |_, api, path: String| Ok(api.with(|bench| bench.expect_active(&path))?))?;
         self.add("expect_output(name, predicate)", |lua, api, (name, holds): (String, Option<Function>)| {
             for message in outputs(lua, api, &name)? {
