@@ -129,16 +129,23 @@ impl Engine {
             self.store.stop(block);
         }
         let span = self.failure_span(block, &failure);
-        match self.found_before(span).filter(|_| code == Code::Runtime) {
-            Some(found) => self.block_fault(block, found.code, span, found.message, found.help),
+        match self.found_before(block, &failure) {
+            Some(found) => self.block_fault(block, found.code, found.span, found.message, found.help),
             None => self.block_fault(block, code, span, failure.message, help.map(str::to_string)),
         }
     }
 
     /// An unknown name was reported when the program was read: it is the same fault, and now it has happened.
-    fn found_before(&self, span: Span) -> Option<Diagnostic> {
-        let mut findings = self.program.findings.iter();
-        findings.find(|finding| finding.code == Code::UnknownVariable && finding.span == span).cloned()
+    fn found_before(&self, block: BlockId, failure: &Failure) -> Option<Diagnostic> {
+        let name = failure.message.strip_prefix("there is no variable or function '")?.split('\'').next()?;
+        let within = self.program[block].span;
+        let is_it = |finding: &&Diagnostic| {
+            let Span { file, start, end } = finding.span;
+            finding.code == Code::UnknownVariable
+                && (file, start >= within.start, end <= within.end) == (within.file, true, true)
+                && self.program.source(within).slice(finding.span) == name
+        };
+        self.program.findings.iter().find(is_it).cloned()
     }
 
     fn failure_span(&self, block: BlockId, failure: &Failure) -> Span {
