@@ -62,8 +62,7 @@ impl Resolver<'_> {
             state.map(|state| (machine, state))
         });
         if machine.is_none() {
-            let known = Names::of(&self.program).machines(by);
-            self.unknown(Code::UnknownMachine, "machine", &spawn.machine, known.iter().map(|name| &**name));
+            self.unknown_machine(spawn, by);
         }
         Spawn { machine_name: spawn.machine.text.clone(), state_name: spawn.state.text.clone(), target, span: spawn.span }
     }
@@ -109,8 +108,32 @@ impl Resolver<'_> {
         let target = self.program.state_named(owner, &tree.target.text);
         if target.is_none() {
             self.unknown_state(owner, &tree.target);
+            if kind == TransitionKind::Exit && self.program.state_named(machine, &tree.target.text).is_some() {
+                self.help_last(format!("an exit goes to a state of `{}`; `on` goes to one of `{}`", self.name(owner), self.name(machine)));
+            }
         }
         target
+    }
+
+    fn name(&self, machine: MachineId) -> &str {
+        &self.program[machine].name
+    }
+
+    fn help_last(&mut self, help: String) {
+        if let Some(last) = self.diagnostics.last_mut() {
+            last.help = Some(help);
+        }
+    }
+
+    fn unknown_machine(&mut self, spawn: &ast::Spawn, by: Option<StateId>) {
+        let Some(elsewhere) = self.program.machines.iter().find(|machine| machine.name == spawn.machine.text) else {
+            let known = Names::of(&self.program).machines(by);
+            return self.unknown(Code::UnknownMachine, "machine", &spawn.machine, known.iter().map(|name| &**name));
+        };
+        let message = format!("machine `{}` can't be spawned here: it is written in another state", spawn.machine.text);
+        let help = "a spawn may name the machines of its own state, of the states around it, and those at top level";
+        let diagnostic = Diagnostic::error(Code::UnknownMachine, spawn.machine.span, message);
+        self.diagnostics.push(diagnostic.also(elsewhere.name_span, "written here").help(help));
     }
 
     /// Where a transition can be taken, it joins the lists that a step walks.

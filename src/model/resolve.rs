@@ -281,7 +281,12 @@ impl<'t> Resolver<'t> {
 
     fn config(&mut self, bridge: &ast::Bridge, checker: &mut Checker) -> serde_json::Value {
         let Some(block) = &bridge.config else { return serde_json::json!({}) };
-        checker.config(&block.text).unwrap_or_else(|error| {
+        checker.config(&block.text).unwrap_or_else(|mut error| {
+            // The bracket that Lua sees at the end is not in the text.
+            if !block.text.contains('}') {
+                error.message = error.message.replace("near '}'", "near ']'");
+                error.token = error.token.filter(|token| token != "}");
+            }
             let source = &self.program.sources[block.span.file.0 as usize];
             self.diagnostics.push(super::blocks::syntax_diagnostic(source, block.span, &error));
             serde_json::json!({})
