@@ -96,7 +96,11 @@ fn better(expression: SyntaxError, statements: SyntaxError) -> SyntaxError {
     let further = expression.line > statements.line;
     let to_its_end =
         expression.line == statements.line && expression.is_at_end() && !statements.is_at_end();
-    if further || to_its_end {
+    // `x > 1 && ..`: an expression never is a statement, so that attempt failed at once.
+    let no_statement = expression.line == statements.line
+        && statements.message.starts_with("syntax error near")
+        && expression.token != statements.token;
+    if further || to_its_end || no_statement {
         expression
     } else {
         statements

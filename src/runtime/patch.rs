@@ -200,10 +200,15 @@ fn moved(old: &Program, new: &Program, code: Code, span: Span) -> Option<(Span, 
     let holds = |block: &&Block| block.span.file == span.file && block.span.start <= span.start && span.end <= block.span.end;
     let was = old.blocks.iter().find(holds).filter(|_| happens_while_running)?;
     let owner = old.owner_path_of(was);
-    let now = new.blocks.iter().find(|block| block.code == was.code && new.owner_path_of(block) == owner)?;
+    let twins = |program: &Program| -> Vec<Span> {
+        let same = |block: &&Block| block.code == was.code && program.owner_path_of(block) == owner;
+        program.blocks.iter().filter(same).map(|block| block.span).collect()
+    };
+    let nth = twins(old).iter().position(|&span| span == was.span)?;
+    let now = *twins(new).get(nth)?;
     let offset = (span.start - was.span.start) as usize;
-    let start = now.span.start as usize + offset;
-    let span = Span::new(now.span.file, start, start + (span.end - span.start) as usize);
+    let start = now.start as usize + offset;
+    let span = Span::new(now.file, start, start + (span.end - span.start) as usize);
     Some((span, new.source(span).clone()))
 }
 

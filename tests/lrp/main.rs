@@ -18,6 +18,7 @@ mod edits;
 mod layers;
 mod lines;
 mod picture;
+mod plot;
 mod runs;
 mod stage;
 mod walk;

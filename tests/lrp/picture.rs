@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 
 use lrp::runtime::Engine;
-use lrp::ui::view::{Mode, View, owner};
+use lrp::ui::view::{Mode, Origin, View, owner};
 
 pub fn agrees(view: &View, engine: &Engine) -> Result<(), String> {
     let same = |what: &str, seen: String, is: String| match seen == is {
@@ -29,6 +29,15 @@ pub fn agrees(view: &View, engine: &Engine) -> Result<(), String> {
     for state in &engine.program().states {
         let seen = view.states.get(&state.path).map_or(0, |state| state.visits);
         same(&format!("visits of {}", state.path), seen.to_string(), engine.visits(&state.path).unwrap_or(0).to_string())?;
+    }
+    let seen = view.problems.iter().filter(|problem| problem.origin == Origin::Run);
+    let seen = seen.map(|problem| (problem.key.code.clone(), problem.key.line, problem.key.column, problem.count));
+    let is = engine.faults().map(|fault| (fault.code, fault.line, fault.column, fault.count));
+    same("faults", format!("{:?}", seen.collect::<BTreeSet<_>>()), format!("{:?}", is.collect::<BTreeSet<_>>()))?;
+    for (machine, running) in view.machines.iter().filter(|(_, machine)| machine.running) {
+        if let Some(state) = running.spawned_by.as_ref().filter(|state| !view.is_active(state)) {
+            return Err(format!("{machine} runs, but {state} that spawned it is not active"));
+        }
     }
     same("paused", (view.mode != Mode::Running).to_string(), engine.is_paused().to_string())
 }

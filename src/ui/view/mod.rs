@@ -17,7 +17,7 @@ pub use bridge::{Bridge, Message};
 pub use edit::Edit;
 pub use journal::{Entry, Journal, Kind};
 pub use machine::{Machine, State, Timeout};
-pub use problem::{Gravity, Problem, ProblemKey};
+pub use problem::{Gravity, Origin, Problem, ProblemKey};
 pub use variable::Variable;
 pub use world::World;
 
