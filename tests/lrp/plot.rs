@@ -258,7 +258,7 @@ fn expression(choices: &mut Choices, scope: &[String]) -> String {
         0 | 1 => choices.below(5).to_string(),
         2 => format!("({var} or 1) / 3"),
         3 => format!("{var} + 0.1"),
-        4 => format!("{{ n = {var} }}"),
+        4 => format!("{{ n = type({var}) }}"),
         5 => "function() return 1 end".into(),
         _ => "nil + 1".into(),
     }
