@@ -14,11 +14,11 @@ use args::{Args, Task};
 pub fn main() -> ExitCode {
     let args = Args::parse();
     match args.task() {
+        Task::Live(run) => crate::ui::live::run(run.setup(), run.trace),
         Task::Run(run) => crate::session::headless::run(run.setup(), run.trace),
         Task::Check { files, format } => check::check(&files, format),
         Task::Graph(graph) => graph::print(&graph),
         Task::New { name } => new::create(&name),
-        Task::Live(run) => crate::session::headless::run(run.setup(), run.trace),
         Task::Test { paths } => crate::session::test_runner::run(&paths),
         Task::Bridges { kind } => check::bridges(kind.as_deref()),
     }

@@ -42,11 +42,7 @@ pub(super) unsafe extern "C-unwind" fn insert(state: *mut ffi::lua_State) -> c_i
         if ffi::lua_gettop(state) == 3
             && let Some(length) = pretended_length(state)
         {
-            bound(
-                state,
-                1,
-                length.saturating_sub(ffi::lua_tointeger(state, 2)),
-            );
+            bound(state, 1, length.saturating_sub(ffi::lua_tointeger(state, 2)));
         }
         originals().insert(state)
     }
@@ -57,11 +53,7 @@ pub(super) unsafe extern "C-unwind" fn remove(state: *mut ffi::lua_State) -> c_i
         if ffi::lua_gettop(state) > 1
             && let Some(length) = pretended_length(state)
         {
-            bound(
-                state,
-                1,
-                length.saturating_sub(ffi::lua_tointeger(state, 2)),
-            );
+            bound(state, 1, length.saturating_sub(ffi::lua_tointeger(state, 2)));
         }
         originals().remove(state)
     }
@@ -70,10 +62,7 @@ pub(super) unsafe extern "C-unwind" fn remove(state: *mut ffi::lua_State) -> c_i
 /// `table.move`.
 pub(super) unsafe extern "C-unwind" fn shift(state: *mut ffi::lua_State) -> c_int {
     unsafe {
-        let (first, last) = (
-            ffi::luaL_checkinteger(state, 2),
-            ffi::luaL_checkinteger(state, 3),
-        );
+        let (first, last) = (ffi::luaL_checkinteger(state, 2), ffi::luaL_checkinteger(state, 3));
         ffi::luaL_checktype(state, 1, ffi::LUA_TTABLE);
         bound(state, 1, last.saturating_sub(first));
         originals().shift(state)
@@ -103,8 +92,7 @@ pub(super) unsafe extern "C-unwind" fn sort(state: *mut ffi::lua_State) -> c_int
             ffi::lua_pushvalue(state, 2);
             ffi::lua_callk(state, 1, 1, 0, None);
             ffi::lua_replace(state, 2);
-        } else if ffi::lua_type(state, 2) <= ffi::LUA_TNIL && ffi::luaL_len(state, 1) > SORTED_IN_C
-        {
+        } else if ffi::lua_type(state, 2) <= ffi::LUA_TNIL && ffi::luaL_len(state, 1) > SORTED_IN_C {
             ffi::lua_settop(state, 1);
             ffi::lua_rawgetp(state, ffi::LUA_REGISTRYINDEX, (&raw const LESS).cast());
         }

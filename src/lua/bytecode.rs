@@ -31,9 +31,7 @@ const ABSOLUTE: i8 = -0x80;
 
 /// The uses of free names in a function as `lua_dump` writes it, unstripped; nothing if the bytes aren't such.
 pub(super) fn uses(dump: &[u8]) -> Option<Vec<Use>> {
-    let mut reader = Reader {
-        bytes: dump.get(HEADER..)?,
-    };
+    let mut reader = Reader { bytes: dump.get(HEADER..)? };
     let mut uses = Vec::new();
     reader.function(None, &mut uses)?;
     uses.sort_by_key(|found| found.line);
@@ -109,10 +107,7 @@ impl<'a> Reader<'a> {
         self.take(3)?;
         let count = self.size()?;
         let (words, _) = self.take(count.checked_mul(4)?)?.as_chunks::<4>();
-        let code: Vec<_> = words
-            .iter()
-            .map(|word| Instruction(u32::from_le_bytes(*word)))
-            .collect();
+        let code: Vec<_> = words.iter().map(|word| Instruction(u32::from_ne_bytes(*word))).collect();
         let constants = self.constants()?;
         let environments = self.environments(outer)?;
         for _ in 0..self.size()? {
@@ -120,11 +115,7 @@ impl<'a> Reader<'a> {
         }
         let lines = self.lines(first_line)?;
         self.skip_names()?;
-        let function = Function {
-            code,
-            constants,
-            environments,
-        };
+        let function = Function { code, constants, environments };
         uses.extend(function.uses().map(|(at, name, kind)| Use {
             name,
             line: lines.get(at).copied().unwrap_or(0),
@@ -216,9 +207,7 @@ impl Function<'_> {
         let instruction = self.code[at];
         match instruction.opcode() {
             GETTABUP if self.is_environment(instruction.b()) => Some((instruction.c(), Kind::Read)),
-            SETTABUP if self.is_environment(instruction.a()) => {
-                Some((instruction.b(), Kind::Write))
-            }
+            SETTABUP if self.is_environment(instruction.a()) => Some((instruction.b(), Kind::Write)),
             GETUPVAL if self.is_environment(instruction.b()) => self.long_use(at),
             _ => None,
         }
@@ -238,13 +227,11 @@ impl Function<'_> {
             _ => return None,
         };
         let key = load.a();
-        let used = self.code[next..]
-            .iter()
-            .find_map(|user| match user.opcode() {
-                GETTABLE if user.b() == table && user.c() == key => Some(Kind::Read),
-                SETTABLE if user.a() == table && user.b() == key => Some(Kind::Write),
-                _ => None,
-            });
+        let used = self.code[next..].iter().find_map(|user| match user.opcode() {
+            GETTABLE if user.b() == table && user.c() == key => Some(Kind::Read),
+            SETTABLE if user.a() == table && user.b() == key => Some(Kind::Write),
+            _ => None,
+        });
         Some((constant, used?))
     }
 }

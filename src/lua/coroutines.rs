@@ -16,11 +16,7 @@ unsafe fn coroutine(state: *mut ffi::lua_State) -> *mut ffi::lua_State {
 }
 
 /// Resumes `coroutine` with the topmost `arguments`; how many results it left, or nothing, with the error in their place.
-unsafe fn go_on(
-    state: *mut ffi::lua_State,
-    coroutine: *mut ffi::lua_State,
-    arguments: c_int,
-) -> Option<c_int> {
+unsafe fn go_on(state: *mut ffi::lua_State, coroutine: *mut ffi::lua_State, arguments: c_int) -> Option<c_int> {
     unsafe {
         if ffi::lua_checkstack(coroutine, arguments) == 0 {
             ffi::lua_pushstring(state, c"too many arguments to resume".as_ptr());
@@ -28,9 +24,7 @@ unsafe fn go_on(
         }
         ffi::lua_xmove(state, coroutine, arguments);
         let mut results = 0;
-        let status = desk(state).guard.within(coroutine, || {
-            ffi::lua_resume(coroutine, state, arguments, &mut results)
-        });
+        let status = desk(state).guard.within(coroutine, || ffi::lua_resume(coroutine, state, arguments, &mut results));
         if status != ffi::LUA_OK && status != ffi::LUA_YIELD {
             ffi::lua_xmove(coroutine, state, 1);
             return None;
@@ -123,8 +117,7 @@ unsafe fn is_active(state: *mut ffi::lua_State, coroutine: *mut ffi::lua_State) 
     unsafe {
         let mut activation: ffi::lua_Debug = std::mem::zeroed();
         state == coroutine
-            || ffi::lua_status(coroutine) == ffi::LUA_OK
-                && ffi::lua_getstack(coroutine, 0, &mut activation) != 0
+            || ffi::lua_status(coroutine) == ffi::LUA_OK && ffi::lua_getstack(coroutine, 0, &mut activation) != 0
     }
 }
 

@@ -10,6 +10,7 @@ use mlua_sys as ffi;
 use super::Block;
 use super::guard::Guard;
 use super::log::Log;
+use crate::syntax::nearest::nearest;
 
 /// A line of a chunk: a block's text, told from others by a number that is never used twice.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,12 +76,9 @@ impl Desk {
     /// The name nearest to `name` of those that code of chunk `spot` can use.
     pub fn suggest(&self, name: &str, spot: Option<Spot>) -> Option<String> {
         let (chunks, known) = (self.chunks.borrow(), self.known.borrow());
-        let scope = spot
-            .and_then(|spot| chunks.get(&spot.chunk))
-            .map(|chunk| &*chunk.scope);
+        let scope = spot.and_then(|spot| chunks.get(&spot.chunk)).map(|chunk| &*chunk.scope);
         let scope = scope.unwrap_or_default().iter().map(|name| &**name);
-        super::nearest::nearest(name, scope.chain(known.iter().map(String::as_str)))
-            .map(str::to_owned)
+        nearest(name, scope.chain(known.iter().map(String::as_str))).map(str::to_owned)
     }
 }
 
@@ -124,8 +122,7 @@ pub(super) unsafe fn spot(state: *mut ffi::lua_State) -> Option<Spot> {
                 return None;
             }
             ffi::lua_getinfo(state, c"Sl".as_ptr(), &mut activation);
-            chunk_of(CStr::from_ptr(activation.source))
-                .zip(u32::try_from(activation.currentline).ok())
+            chunk_of(CStr::from_ptr(activation.source)).zip(u32::try_from(activation.currentline).ok())
         };
         if let Some((chunk, line)) = found {
             return Some(Spot { chunk, line });

@@ -1,5 +1,7 @@
 //! What can be said of a block without running it. Knows nothing of variables.
 
+use std::sync::LazyLock;
+
 use serde_json::Value;
 
 use super::bytecode::{Kind, Use};
@@ -27,10 +29,7 @@ pub struct Checker {
 }
 
 /// Bounds of a configuration.
-const CONFIG: Bounds = Bounds {
-    depth: 16,
-    bytes: 1 << 20,
-};
+const CONFIG: Bounds = Bounds { depth: 16, bytes: 1 << 20 };
 
 impl Default for Checker {
     fn default() -> Self {
@@ -40,9 +39,7 @@ impl Default for Checker {
 
 impl Checker {
     pub fn new() -> Self {
-        Self {
-            lua: Lua::new(Limits::default(), Access::Sandboxed, 0),
-        }
+        Self { lua: Lua::new(Limits::default(), Access::Sandboxed, 0) }
     }
 
     /// The free names of a block.
@@ -51,9 +48,7 @@ impl Checker {
     /// The text is neither an expression nor statements.
     pub fn check(&mut self, code: &str) -> Result<Facts, SyntaxError> {
         // SAFETY: nothing runs, and there is no memory limit.
-        let (_, uses) = self
-            .lua
-            .unlimited(|lua| unsafe { source::analyse(lua.stack.state(), code) })?;
+        let (_, uses) = self.lua.unlimited(|lua| unsafe { source::analyse(lua.stack.state(), code) })?;
         let mut facts = Facts::default();
         for Use { name, line, kind } in uses {
             match kind {
@@ -72,63 +67,32 @@ impl Checker {
         let code = format!("{{{code}\n}}");
         let facts = self.check(&code)?;
         if let Some(NameUse { name, line }) = facts.reads.into_iter().chain(facts.writes).next() {
-            let message = format!(
-                "'{name}' is nothing here: a configuration is data; a text needs quotation marks"
-            );
-            return Err(SyntaxError {
-                message,
-                line,
-                token: Some(name),
-            });
+            let message = format!("'{name}' is nothing here: a configuration is data; a text needs quotation marks");
+            return Err(SyntaxError { message, line, token: Some(name) });
         }
         let block = self.lua.compile(&code, &[])?;
         let value = self.lua.eval_within(block, CONFIG);
         self.lua.free_block(block);
-        value.map_err(
-            |Failure {
-                 message,
-                 line,
-                 token,
-                 ..
-             }| SyntaxError {
-                message,
-                line,
-                token,
-            },
-        )
+        value.map_err(|Failure { message, line, token, .. }| SyntaxError { message, line, token })
     }
 }
 
 /// The names every block has at hand, sorted; those of `Access::System` besides are `io` and `debug`.
-pub fn known_names() -> impl Iterator<Item = &'static str> {
-    KNOWN.iter().map(|(name, _)| *name)
+pub fn known_names() -> &'static [&'static str] {
+    static NAMES: LazyLock<Vec<&str>> = LazyLock::new(|| KNOWN.iter().map(|(name, _)| *name).collect());
+    &NAMES
 }
 
 /// The fields of a library every block has at hand, sorted; none for other names.
 pub fn known_fields(library: &str) -> &'static [&'static str] {
-    KNOWN
-        .iter()
-        .find(|(name, _)| *name == library)
-        .map_or(&[], |(_, fields)| fields)
+    KNOWN.iter().find(|(name, _)| *name == library).map_or(&[], |(_, fields)| fields)
 }
 
 const KNOWN: &[(&str, &[&str])] = &[
     ("_G", &[]),
     ("_VERSION", &[]),
     ("assert", &[]),
-    (
-        "coroutine",
-        &[
-            "close",
-            "create",
-            "isyieldable",
-            "resume",
-            "running",
-            "status",
-            "wrap",
-            "yield",
-        ],
-    ),
+    ("coroutine", &["close", "create", "isyieldable", "resume", "running", "status", "wrap", "yield"]),
     ("elapsed", &[]),
     ("error", &[]),
     ("getmetatable", &[]),
@@ -142,26 +106,34 @@ const KNOWN: &[(&str, &[&str])] = &[
             "acos",
             "asin",
             "atan",
+            "atan2",
             "ceil",
             "cos",
+            "cosh",
             "deg",
             "exp",
             "floor",
             "fmod",
+            "frexp",
             "huge",
+            "ldexp",
             "log",
+            "log10",
             "max",
             "maxinteger",
             "min",
             "mininteger",
             "modf",
             "pi",
+            "pow",
             "rad",
             "random",
             "randomseed",
             "sin",
+            "sinh",
             "sqrt",
             "tan",
+            "tanh",
             "tointeger",
             "type",
             "ult",
@@ -183,22 +155,14 @@ const KNOWN: &[(&str, &[&str])] = &[
     (
         "string",
         &[
-            "byte", "char", "find", "format", "gmatch", "gsub", "len", "lower", "match", "pack",
-            "packsize", "rep", "reverse", "sub", "unpack", "upper",
+            "byte", "char", "find", "format", "gmatch", "gsub", "len", "lower", "match", "pack", "packsize", "rep",
+            "reverse", "sub", "unpack", "upper",
         ],
     ),
-    (
-        "table",
-        &[
-            "concat", "insert", "move", "pack", "remove", "sort", "unpack",
-        ],
-    ),
+    ("table", &["concat", "insert", "move", "pack", "remove", "sort", "unpack"]),
     ("tonumber", &[]),
     ("tostring", &[]),
     ("type", &[]),
-    (
-        "utf8",
-        &["char", "charpattern", "codepoint", "codes", "len", "offset"],
-    ),
+    ("utf8", &["char", "charpattern", "codepoint", "codes", "len", "offset"]),
     ("xpcall", &[]),
 ];

@@ -50,20 +50,12 @@ unsafe fn string(state: *mut ffi::lua_State, index: c_int) -> u64 {
     };
     let (words, rest) = bytes.as_chunks::<8>();
     let start = mix(4, length as u64);
-    let hash = words
-        .iter()
-        .fold(start, |hash, word| mix(hash, u64::from_le_bytes(*word)));
-    rest.iter()
-        .fold(hash, |hash, byte| mix(hash, u64::from(*byte)))
+    let hash = words.iter().fold(start, |hash, word| mix(hash, u64::from_le_bytes(*word)));
+    rest.iter().fold(hash, |hash, byte| mix(hash, u64::from(*byte)))
 }
 
 /// The sum over the entries, so that their order doesn't count.
-unsafe fn table(
-    state: *mut ffi::lua_State,
-    index: c_int,
-    depth: usize,
-    entries: &mut usize,
-) -> u64 {
+unsafe fn table(state: *mut ffi::lua_State, index: c_int, depth: usize, entries: &mut usize) -> u64 {
     let mut sum = 5;
     if depth == 0 || unsafe { ffi::lua_checkstack(state, 4) } == 0 {
         return sum;

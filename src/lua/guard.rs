@@ -115,7 +115,7 @@ impl Guard {
     /// Sets the hooks, if the call meant is still running. Called in the signal handler: stores and lua_sethook, which may be used there.
     fn arm(&self) {
         let call = self.call.load(Relaxed);
-        if call % 2 == 0 || call != self.target.load(SeqCst) {
+        if call.is_multiple_of(2) || call != self.target.load(SeqCst) {
             return;
         }
         self.armed.store(call, Relaxed);
@@ -134,15 +134,8 @@ impl Guard {
     ///
     /// # Safety
     /// `coroutine` lives until `f` returns, and `f` raises no error.
-    pub unsafe fn within(
-        &self,
-        coroutine: *mut ffi::lua_State,
-        f: impl FnOnce() -> c_int,
-    ) -> c_int {
-        let mut link = Running {
-            coroutine,
-            outer: self.running.load(Relaxed),
-        };
+    pub unsafe fn within(&self, coroutine: *mut ffi::lua_State, f: impl FnOnce() -> c_int) -> c_int {
+        let mut link = Running { coroutine, outer: self.running.load(Relaxed) };
         self.running.store(&mut link, Relaxed);
         compiler_fence(SeqCst);
         if self.is_over() {
@@ -233,10 +226,7 @@ impl Watchdog {
         GUARDS.set(Arc::as_ptr(&guard).cast_mut());
         handle_signal();
         let watched = guard.clone();
-        let thread = std::thread::Builder::new()
-            .name("lua watchdog".to_owned())
-            .spawn(move || watch(&watched))
-            .ok();
+        let thread = std::thread::Builder::new().name("lua watchdog".to_owned()).spawn(move || watch(&watched)).ok();
         Self { guard, thread }
     }
 
@@ -282,7 +272,7 @@ fn watch(guard: &Guard) {
         if call != seen.0 {
             seen = (call, Instant::now());
             guard.overdue.store(0, SeqCst);
-        } else if call % 2 == 1
+        } else if !call.is_multiple_of(2)
             && let Some(over) = seen.1.elapsed().checked_sub(guard.limit)
         {
             guard.overdue.store(over.as_micros().max(1) as u64, SeqCst);

@@ -75,11 +75,7 @@ impl Log {
         if cut.len() < bytes.len() {
             message.push('…');
         }
-        lines.push(Written {
-            level,
-            message,
-            spot,
-        });
+        lines.push(Written { level, message, spot });
     }
 }
 
@@ -113,11 +109,7 @@ unsafe fn write(state: *mut ffi::lua_State, level: Level) -> c_int {
         ffi::lua_concat(state, (2 * count - 1).max(0));
         let mut length = 0;
         let bytes = ffi::lua_tolstring(state, -1, &mut length);
-        desk(state).log.write(
-            level,
-            std::slice::from_raw_parts(bytes.cast(), length),
-            spot(state),
-        );
+        desk(state).log.write(level, std::slice::from_raw_parts(bytes.cast(), length), spot(state));
         0
     }
 }

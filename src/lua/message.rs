@@ -14,10 +14,7 @@ pub(super) fn split_position(text: &str) -> (Option<Spot>, &str) {
 fn position(text: &str) -> Option<(Spot, usize)> {
     let (chunk, rest) = text.strip_prefix(MARK)?.split_once(':')?;
     let (line, rest) = rest.split_once(':')?;
-    let spot = Spot {
-        chunk: chunk.parse().ok()?,
-        line: line.parse().ok()?,
-    };
+    let spot = Spot { chunk: chunk.parse().ok()?, line: line.parse().ok()? };
     Some((spot, text.len() - rest.len()))
 }
 
@@ -30,9 +27,7 @@ pub(super) fn relocate(text: &str, desk: &Desk) -> String {
         rest = &rest[at..];
         let length = match position(rest) {
             Some((spot, length)) => {
-                let (file, line) = desk
-                    .place(spot.chunk, spot.line)
-                    .unwrap_or(("block".to_owned(), spot.line));
+                let (file, line) = desk.place(spot.chunk, spot.line).unwrap_or(("block".to_owned(), spot.line));
                 result.push_str(&format!("{file}:{line}:"));
                 length
             }
@@ -45,7 +40,8 @@ pub(super) fn relocate(text: &str, desk: &Desk) -> String {
 }
 
 /// What stands before a name in Lua's messages.
-const BEFORE_NAME: [&str; 10] = [
+const BEFORE_NAME: [&str; 11] = [
+    "function '",
     "global '",
     "local '",
     "field '",

@@ -7,8 +7,8 @@ use std::sync::OnceLock;
 use mlua::{Function, LuaOptions, StdLib, Table};
 use mlua_sys as ffi;
 
-use super::desk::{Desk, desk, spot};
-use super::{Access, bounded, coroutines, log, text};
+use super::desk::Desk;
+use super::{Access, base, bounded, coroutines, log, search, text};
 
 /// Lua's own functions, behind ours of the same name.
 pub(super) struct Originals {
@@ -64,6 +64,9 @@ pub(super) enum Order {
 const KNOWN_ORDER: &str = include_str!("order.txt");
 const KEYS: &str = "local t, s = {}, {} for i = 1, 24 do t['key' .. i] = i end for k in next, t do s[#s + 1] = k end return table.concat(s, ' ')";
 
+/// Finds the text of a module by its name, or says why it doesn't.
+pub type Finder = Box<dyn Fn(&str) -> Result<String, String>>;
+
 /// Tables the prelude and Rust share.
 pub(super) struct Sandbox {
     pub mlua: mlua::Lua,
@@ -79,34 +82,22 @@ impl Sandbox {
         mlua.set_app_data(desk.clone());
         // SAFETY: the state is live, nothing runs, and the application data keeps the desk as long as the state.
         unsafe { mlua.exec_raw::<()>((), |state| super::desk::install(state, Rc::as_ptr(desk)))? };
-        let (environment, own, loaded) =
-            (mlua.globals(), mlua.create_table()?, mlua.create_table()?);
+        let (environment, own, loaded) = (mlua.globals(), mlua.create_table()?, mlua.create_table()?);
         own.set("loaded", &loaded)?;
-        let sandbox = Self {
-            mlua,
-            environment,
-            loaded,
-            own,
-        };
+        let sandbox = Self { mlua, environment, loaded, own };
         sandbox.take_originals()?;
         let order = sandbox.order()?;
         sandbox.replace_functions()?;
         sandbox.run_prelude(access, order, seed)?;
         sandbox.protect_strings()?;
         sandbox.be_strict()?;
-        let names = sandbox
-            .environment
-            .pairs::<String, mlua::Value>()
-            .filter_map(|pair| Some(pair.ok()?.0));
+        let names = sandbox.environment.pairs::<String, mlua::Value>().filter_map(|pair| Some(pair.ok()?.0));
         desk.known.borrow_mut().extend(names);
         Ok(sandbox)
     }
 
     /// The function by which modules are found: their text, or why not.
-    pub fn set_finder(
-        &self,
-        find: Box<dyn Fn(&str) -> Result<String, String>>,
-    ) -> mlua::Result<()> {
+    pub fn set_finder(&self, find: Finder) -> mlua::Result<()> {
         let find = self.mlua.create_function(move |_, name: String| {
             Ok(match find(&name) {
                 Ok(text) => (Some(text), None),
@@ -118,11 +109,7 @@ impl Sandbox {
 
     fn order(&self) -> mlua::Result<Order> {
         let order: String = self.mlua.load(KEYS).eval()?;
-        Ok(if order == KNOWN_ORDER.trim_end() {
-            Order::Fixed
-        } else {
-            Order::ByKey
-        })
+        Ok(if order == KNOWN_ORDER.trim_end() { Order::Fixed } else { Order::ByKey })
     }
 
     fn take_originals(&self) -> mlua::Result<()> {
@@ -149,10 +136,7 @@ impl Sandbox {
         let function: Function = library.raw_get(name)?;
         let mut found = None;
         // SAFETY: the function is on top of the stack.
-        unsafe {
-            self.mlua
-                .exec_raw::<()>(function, |state| found = ffi::lua_tocfunction(state, -1))?
-        };
+        unsafe { self.mlua.exec_raw::<()>(function, |state| found = ffi::lua_tocfunction(state, -1))? };
         found.ok_or_else(|| mlua::Error::runtime(format!("{name} isn't Lua's own")))
     }
 
@@ -165,14 +149,9 @@ impl Sandbox {
         if !env.contains_key("os")? {
             env.raw_set("os", self.mlua.create_table()?)?;
         }
-        env.raw_get::<Table>("string")?
-            .raw_set("dump", mlua::Value::Nil)?;
+        env.raw_get::<Table>("string")?.raw_set("dump", mlua::Value::Nil)?;
         for (library, functions) in FUNCTIONS {
-            let library = if library.is_empty() {
-                env.clone()
-            } else {
-                env.raw_get(*library)?
-            };
+            let library = if library.is_empty() { env.clone() } else { env.raw_get(*library)? };
             for &(name, function) in *functions {
                 // SAFETY: each keeps to Lua's rules for C functions: it owns nothing that needs a destructor where it can raise an error.
                 library.raw_set(name, unsafe { self.mlua.create_c_function(function)? })?;
@@ -183,30 +162,23 @@ impl Sandbox {
 
     fn run_prelude(&self, access: Access, order: Order, seed: u64) -> mlua::Result<()> {
         for name in ["now", "pcall", "getmetatable", "rawget"] {
-            self.own
-                .raw_set(name, self.environment.raw_get::<Function>(name)?)?;
+            self.own.raw_set(name, self.environment.raw_get::<Function>(name)?)?;
         }
         self.own.raw_set("seed", seed as i64)?;
         self.own.raw_set("date", self.date(access)?)?;
-        self.set_finder(Box::new(|name| {
-            Err(format!("module '{name}' is not found"))
-        }))?;
+        self.set_finder(Box::new(|name| Err(format!("module '{name}' is not found"))))?;
         let order = match order {
             Order::Fixed => "as stored",
             Order::ByKey => "by key",
         };
         let prelude = self.mlua.load(include_str!("prelude.lua")).set_name("=lrp");
         prelude.call::<()>((&self.environment, &self.own, order))?;
-        for (name, key) in [
-            ("less", &raw const bounded::LESS),
-            ("compare", &raw const bounded::COMPARE),
-        ] {
+        for (name, key) in [("less", &raw const bounded::LESS), ("compare", &raw const bounded::COMPARE)] {
             let function: Function = self.own.raw_get(name)?;
             // SAFETY: the function is on top of the stack; the key is an address of ours.
             unsafe {
-                self.mlua.exec_raw::<()>(function, |state| {
-                    ffi::lua_rawsetp(state, ffi::LUA_REGISTRYINDEX, key.cast())
-                })?
+                self.mlua
+                    .exec_raw::<()>(function, |state| ffi::lua_rawsetp(state, ffi::LUA_REGISTRYINDEX, key.cast()))?
             };
         }
         Ok(())
@@ -227,11 +199,7 @@ impl Sandbox {
     /// What `("x"):upper()` finds stays, whatever is done to `string`.
     fn protect_strings(&self) -> mlua::Result<()> {
         let copy = self.mlua.create_table()?;
-        for pair in self
-            .environment
-            .raw_get::<Table>("string")?
-            .pairs::<String, mlua::Value>()
-        {
+        for pair in self.environment.raw_get::<Table>("string")?.pairs::<String, mlua::Value>() {
             let (name, function) = pair?;
             copy.raw_set(name, function)?;
         }
@@ -251,8 +219,8 @@ impl Sandbox {
         let metatable = self.mlua.create_table()?;
         // SAFETY: as for the functions above.
         unsafe {
-            metatable.raw_set("__index", self.mlua.create_c_function(read_unknown)?)?;
-            metatable.raw_set("__newindex", self.mlua.create_c_function(write_unknown)?)?;
+            metatable.raw_set("__index", self.mlua.create_c_function(base::read_unknown)?)?;
+            metatable.raw_set("__newindex", self.mlua.create_c_function(base::write_unknown)?)?;
         }
         metatable.raw_set("__metatable", false)?;
         self.environment.set_metatable(Some(metatable))
@@ -279,34 +247,29 @@ const FUNCTIONS: &[(&str, Functions)] = &[
     (
         "",
         &[
-            ("elapsed", elapsed),
-            ("load", load),
-            ("now", now),
+            ("elapsed", base::elapsed),
+            ("load", base::load),
+            ("now", base::now),
             ("print", log::info),
-            ("rawset", rawset),
-            ("setmetatable", setmetatable),
+            ("rawset", base::rawset),
+            ("setmetatable", base::setmetatable),
             ("tostring", text::tostring),
             ("xpcall", coroutines::xpcall),
         ],
     ),
+    ("coroutine", &[("close", coroutines::close), ("resume", coroutines::resume), ("wrap", coroutines::wrap)]),
+    ("log", &[("debug", log::debug), ("info", log::info), ("warn", log::warn), ("error", log::error)]),
     (
-        "coroutine",
+        "string",
         &[
-            ("close", coroutines::close),
-            ("resume", coroutines::resume),
-            ("wrap", coroutines::wrap),
+            ("find", search::find),
+            ("format", text::format),
+            ("gmatch", search::gmatch),
+            ("gsub", search::gsub),
+            ("match", search::matched),
+            ("rep", bounded::rep),
         ],
     ),
-    (
-        "log",
-        &[
-            ("debug", log::debug),
-            ("info", log::info),
-            ("warn", log::warn),
-            ("error", log::error),
-        ],
-    ),
-    ("string", &[("format", text::format), ("rep", bounded::rep)]),
     (
         "table",
         &[
@@ -318,115 +281,3 @@ const FUNCTIONS: &[(&str, Functions)] = &[
         ],
     ),
 ];
-
-unsafe extern "C-unwind" fn now(state: *mut ffi::lua_State) -> c_int {
-    unsafe {
-        ffi::lua_pushnumber(state, desk(state).now.get());
-        1
-    }
-}
-
-unsafe extern "C-unwind" fn elapsed(state: *mut ffi::lua_State) -> c_int {
-    unsafe {
-        let desk = desk(state);
-        ffi::lua_pushnumber(state, desk.now.get() - desk.since.get());
-        1
-    }
-}
-
-/// Of text only: bytecode can be made to do anything.
-unsafe extern "C-unwind" fn load(state: *mut ffi::lua_State) -> c_int {
-    unsafe {
-        ffi::luaL_checkany(state, 1);
-        if ffi::lua_gettop(state) < 3 {
-            ffi::lua_settop(state, 3);
-        }
-        ffi::lua_pushstring(state, c"t".as_ptr());
-        ffi::lua_replace(state, 3);
-        originals().load(state)
-    }
-}
-
-/// Without `__gc`: finalizers run when they like, and can't be stopped.
-unsafe extern "C-unwind" fn setmetatable(state: *mut ffi::lua_State) -> c_int {
-    unsafe {
-        if ffi::lua_type(state, 2) == ffi::LUA_TTABLE {
-            ffi::lua_pushstring(state, c"__gc".as_ptr());
-            if ffi::lua_rawget(state, 2) != ffi::LUA_TNIL {
-                return ffi::luaL_error(
-                    state,
-                    c"a metatable can't have '__gc' here; '__close' and '<close>' are at hand"
-                        .as_ptr(),
-                );
-            }
-            ffi::lua_pop(state, 1);
-        }
-        originals().setmetatable(state)
-    }
-}
-
-unsafe extern "C-unwind" fn rawset(state: *mut ffi::lua_State) -> c_int {
-    unsafe {
-        ffi::lua_rawgeti(state, ffi::LUA_REGISTRYINDEX, ffi::LUA_RIDX_GLOBALS);
-        if ffi::lua_rawequal(state, 1, -1) != 0 {
-            return ffi::luaL_error(
-                state,
-                c"there are no globals; declare a variable or use 'local'".as_ptr(),
-            );
-        }
-        ffi::lua_pop(state, 1);
-        originals().rawset(state)
-    }
-}
-
-unsafe extern "C-unwind" fn read_unknown(state: *mut ffi::lua_State) -> c_int {
-    unsafe { complain(state, "there is no variable or function '", "'") }
-}
-
-unsafe extern "C-unwind" fn write_unknown(state: *mut ffi::lua_State) -> c_int {
-    unsafe {
-        complain(
-            state,
-            "there is no variable '",
-            "' to assign to; declare it, or say 'local' for one of this block only",
-        )
-    }
-}
-
-/// Raises the error for the name that is the second argument.
-unsafe fn complain(state: *mut ffi::lua_State, before: &str, after: &str) -> c_int {
-    unsafe {
-        let mut buffer = [0_u8; 512];
-        let length = describe(state, before, after, &mut buffer);
-        ffi::luaL_where(state, 1);
-        ffi::lua_pushlstring(state, buffer.as_ptr().cast(), length);
-        ffi::lua_concat(state, 2);
-        ffi::lua_error(state)
-    }
-}
-
-/// Everything Rust owns is gone again when this returns, as what follows leaves by a jump.
-unsafe fn describe(
-    state: *mut ffi::lua_State,
-    before: &str,
-    after: &str,
-    buffer: &mut [u8; 512],
-) -> usize {
-    let name = unsafe {
-        let mut length = 0;
-        match ffi::lua_type(state, 2) {
-            ffi::LUA_TSTRING => {
-                let bytes = ffi::lua_tolstring(state, 2, &mut length);
-                String::from_utf8_lossy(std::slice::from_raw_parts(bytes.cast(), length))
-                    .into_owned()
-            }
-            kind => text::type_name(kind).to_owned(),
-        }
-    };
-    let hint = unsafe { desk(state).suggest(&name, spot(state)) };
-    let hint = hint.map_or(String::new(), |hint| format!("; did you mean '{hint}'?"));
-    let message = format!("{before}{name}{after}{hint}");
-    let length = message.floor_char_boundary(buffer.len());
-    buffer[..length].copy_from_slice(&message.as_bytes()[..length]);
-    length
-}

@@ -23,11 +23,7 @@ pub struct SyntaxError {
 impl SyntaxError {
     pub(super) fn new(line: u32, message: String) -> Self {
         let token = message::token(&message);
-        Self {
-            message,
-            line,
-            token,
-        }
+        Self { message, line, token }
     }
 
     /// The message for a block whose first line is line `first` (from 1) of its file.
@@ -71,10 +67,7 @@ pub(super) const NAMES: usize = 200;
 ///
 /// # Safety
 /// `state` is a live state that isn't running, with four free slots, and no memory limit.
-pub(super) unsafe fn analyse(
-    state: *mut ffi::lua_State,
-    code: &str,
-) -> Result<(Form, Vec<Use>), SyntaxError> {
+pub(super) unsafe fn analyse(state: *mut ffi::lua_State, code: &str) -> Result<(Form, Vec<Use>), SyntaxError> {
     let code = &one_line_ends(code);
     unsafe {
         let form = match load_as(state, code, Form::Expression) {
@@ -127,16 +120,8 @@ pub(super) unsafe fn build(
     names: &[&str],
     id: u32,
 ) -> Result<(), SyntaxError> {
-    let locals = if names.is_empty() {
-        String::new()
-    } else {
-        format!("local {} ", names.join(","))
-    };
-    let text = format!(
-        "{locals}return function() {}{}\nend",
-        form.begin(),
-        one_line_ends(code)
-    );
+    let locals = if names.is_empty() { String::new() } else { format!("local {} ", names.join(",")) };
+    let text = format!("{locals}return function() {}{}\nend", form.begin(), one_line_ends(code));
     unsafe {
         load(state, &text, id)?;
         match ffi::lua_pcallk(state, 0, 1, 0, 0, None) {
@@ -147,17 +132,9 @@ pub(super) unsafe fn build(
 }
 
 unsafe fn load(state: *mut ffi::lua_State, text: &str, id: u32) -> Result<(), SyntaxError> {
-    let Ok(name) = CString::new(chunk_name(id)) else {
-        unreachable!("a chunk's name is a mark and digits")
-    };
+    let Ok(name) = CString::new(chunk_name(id)) else { unreachable!("a chunk's name is a mark and digits") };
     unsafe {
-        match ffi::luaL_loadbufferx(
-            state,
-            text.as_ptr().cast(),
-            text.len(),
-            name.as_ptr(),
-            c"t".as_ptr(),
-        ) {
+        match ffi::luaL_loadbufferx(state, text.as_ptr().cast(), text.len(), name.as_ptr(), c"t".as_ptr()) {
             ffi::LUA_OK => Ok(()),
             _ => Err(take_error(state)),
         }
@@ -168,11 +145,7 @@ unsafe fn take_error(state: *mut ffi::lua_State) -> SyntaxError {
     let text = unsafe {
         let mut length = 0;
         let bytes = ffi::lua_tolstring(state, -1, &mut length);
-        let bytes: &[u8] = if bytes.is_null() {
-            b""
-        } else {
-            std::slice::from_raw_parts(bytes.cast(), length)
-        };
+        let bytes: &[u8] = if bytes.is_null() { b"" } else { std::slice::from_raw_parts(bytes.cast(), length) };
         String::from_utf8_lossy(bytes).into_owned()
     };
     unsafe { ffi::lua_pop(state, 1) };
@@ -186,9 +159,6 @@ unsafe extern "C-unwind" fn write(
     length: usize,
     dump: *mut c_void,
 ) -> c_int {
-    unsafe {
-        (*dump.cast::<Vec<u8>>())
-            .extend_from_slice(std::slice::from_raw_parts(bytes.cast(), length))
-    };
+    unsafe { (*dump.cast::<Vec<u8>>()).extend_from_slice(std::slice::from_raw_parts(bytes.cast(), length)) };
     0
 }

@@ -46,12 +46,7 @@ impl Stack {
     pub fn new(mlua: &mlua::Lua, guard: Arc<Guard>) -> mlua::Result<Self> {
         let maker: mlua::Function = mlua.load(MAKE).eval()?;
         let state = mlua.exec_raw_lua(|raw| raw.state());
-        let mut stack = Self {
-            state,
-            guard,
-            top: MAKER,
-            free: Vec::new(),
-        };
+        let mut stack = Self { state, guard, top: MAKER, free: Vec::new() };
         mlua.set_named_registry_value("lrp maker", maker)?;
         // SAFETY: the state is live, nothing runs, and no memory limit is set yet.
         unsafe {
@@ -70,10 +65,7 @@ impl Stack {
     fn grow(&mut self) {
         // SAFETY: doesn't raise an error.
         let there = unsafe { ffi::lua_checkstack(self.state, SPARE) };
-        assert!(
-            there != 0,
-            "the program has more than 900,000 variables and blocks"
-        );
+        assert!(there != 0, "the program has more than 900,000 variables and blocks");
     }
 
     /// Puts the value on top of the stack into a slot.
@@ -120,10 +112,22 @@ impl Stack {
         };
         match (self.guard.leave(), status) {
             (false, ffi::LUA_OK) => Ok(()),
+            (true, ffi::LUA_OK) => Err(self.stopped_too_late()),
             (true, _) => Err(Trouble::OverTime),
             (false, ffi::LUA_ERRMEM) => Err(Trouble::OverMemory),
             (false, _) => Err(Trouble::Error),
         }
+    }
+
+    /// A call can end by itself while it is being stopped: its results count as its error.
+    #[cold]
+    fn stopped_too_late(&self) -> Trouble {
+        // SAFETY: SPARE slots are free.
+        unsafe {
+            ffi::lua_settop(self.state, self.top);
+            ffi::lua_pushnil(self.state);
+        }
+        Trouble::OverTime
     }
 
     /// Takes the results of a call off the stack again.
@@ -195,12 +199,19 @@ impl Stack {
         self.with(cell, |state| unsafe { Fingerprint::of(state, -1) })
     }
 
+    /// Gives one variable the value of another.
+    pub fn copy(&self, from: u32, to: u32) {
+        // SAFETY: the slots hold variables; setting pops the value.
+        unsafe {
+            ffi::lua_getupvalue(self.state, from as c_int, 1);
+            ffi::lua_setupvalue(self.state, to as c_int, 1);
+        }
+    }
+
     /// About how many bytes a variable's value takes.
     pub fn weight(&self, cell: u32) -> usize {
         // SAFETY: the value is on top.
-        self.with(cell, |state| unsafe {
-            super::weight::weight(state, ffi::lua_gettop(state))
-        })
+        self.with(cell, |state| unsafe { super::weight::weight(state, ffi::lua_gettop(state)) })
     }
 
     /// Gives a variable a value; there must be no memory limit.
@@ -241,11 +252,8 @@ impl Stack {
             ffi::lua_pcallk(self.state, 1, 1, 0, 0, None);
             let mut length = 0;
             let bytes = ffi::lua_tolstring(self.state, -1, &mut length);
-            let bytes: &[u8] = if bytes.is_null() {
-                b"unknown error"
-            } else {
-                std::slice::from_raw_parts(bytes.cast(), length)
-            };
+            let bytes: &[u8] =
+                if bytes.is_null() { b"unknown error" } else { std::slice::from_raw_parts(bytes.cast(), length) };
             let text = String::from_utf8_lossy(bytes).into_owned();
             ffi::lua_settop(self.state, self.top);
             text

@@ -66,7 +66,7 @@ unsafe fn push_json(state: *mut ffi::lua_State, index: c_int) {
     let mut buffer = [0; 2 * value::BYTES];
     let length = {
         let text = unsafe { value::read(state, index) }.to_string();
-        let length = text.floor_char_boundary(buffer.len());
+        let length = cut(&text, buffer.len());
         buffer[..length].copy_from_slice(&text.as_bytes()[..length]);
         length
     };
@@ -79,8 +79,7 @@ unsafe fn has_own_text(state: *mut ffi::lua_State, index: c_int) -> bool {
         match ffi::lua_type(state, index) {
             ffi::LUA_TNIL | ffi::LUA_TBOOLEAN | ffi::LUA_TNUMBER | ffi::LUA_TSTRING => true,
             _ => {
-                let found =
-                    ffi::luaL_getmetafield(state, index, c"__tostring".as_ptr()) != ffi::LUA_TNIL;
+                let found = ffi::luaL_getmetafield(state, index, c"__tostring".as_ptr()) != ffi::LUA_TNIL;
                 ffi::lua_pop(state, found.into());
                 found
             }
@@ -98,15 +97,8 @@ unsafe fn drop_traceback(state: *mut ffi::lua_State) {
         let bytes: *const u8 = ffi::lua_tolstring(state, -1, &mut length).cast();
         let text = std::slice::from_raw_parts(bytes, length);
         let end = b"\nstack traceback:";
-        let end = text
-            .windows(end.len())
-            .position(|window| window == end)
-            .unwrap_or(length);
-        let begin = if text.starts_with(KIND) {
-            KIND.len()
-        } else {
-            0
-        };
+        let end = text.windows(end.len()).position(|window| window == end).unwrap_or(length);
+        let begin = if text.starts_with(KIND) { KIND.len() } else { 0 };
         ffi::lua_pushlstring(state, bytes.add(begin).cast(), end - begin);
         ffi::lua_replace(state, -2);
     }
@@ -122,10 +114,7 @@ pub(super) unsafe extern "C-unwind" fn format(state: *mut ffi::lua_State) -> c_i
         while let Some(conversion) = next_conversion(form, &mut at) {
             argument += 1;
             if conversion == b'p' {
-                return ffi::luaL_error(
-                    state,
-                    c"'%%p' shows an address, which differs in every run".as_ptr(),
-                );
+                return ffi::luaL_error(state, c"'%%p' shows an address, which differs in every run".as_ptr());
             }
             if conversion == b's' && argument <= ffi::lua_gettop(state) {
                 push_text(state, argument);
@@ -143,10 +132,7 @@ fn next_conversion(form: &[u8], at: &mut usize) -> Option<u8> {
         if byte != b'%' {
             continue;
         }
-        while form
-            .get(*at)
-            .is_some_and(|byte| b"-+ #0123456789.".contains(byte))
-        {
+        while form.get(*at).is_some_and(|byte| b"-+ #0123456789.".contains(byte)) {
             *at += 1;
         }
         let letter = *form.get(*at)?;
@@ -156,6 +142,11 @@ fn next_conversion(form: &[u8], at: &mut usize) -> Option<u8> {
         }
     }
     None
+}
+
+/// How many bytes of a text fit, whole characters only.
+pub(super) fn cut(text: &str, bytes: usize) -> usize {
+    (0..=bytes.min(text.len())).rev().find(|at| text.is_char_boundary(*at)).unwrap_or(0)
 }
 
 /// The name of a type, as Lua has it.

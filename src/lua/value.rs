@@ -4,6 +4,7 @@
 //! a table with the keys 1..n as an array, any other as an object, its keys sorted. What lies deeper than [`DEPTH`] or
 //! beyond about [`BYTES`] is left out; `"cut"` says how many entries.
 
+use std::cmp::Ordering;
 use std::ffi::c_int;
 
 use mlua_sys as ffi;
@@ -34,32 +35,15 @@ struct Reader {
 /// # Safety
 /// `state` is a live state and `index` a valid index. Raises no error, allocates nothing in Lua.
 pub(super) unsafe fn read(state: *mut ffi::lua_State, index: c_int) -> Value {
-    unsafe {
-        read_within(
-            state,
-            index,
-            Bounds {
-                depth: DEPTH,
-                bytes: BYTES,
-            },
-        )
-    }
+    unsafe { read_within(state, index, Bounds { depth: DEPTH, bytes: BYTES }) }
 }
 
 /// The same with other bounds.
 ///
 /// # Safety
 /// As for `read`.
-pub(super) unsafe fn read_within(
-    state: *mut ffi::lua_State,
-    index: c_int,
-    bounds: Bounds,
-) -> Value {
-    let mut reader = Reader {
-        state,
-        bytes: bounds.bytes,
-        counted: COUNTED,
-    };
+pub(super) unsafe fn read_within(state: *mut ffi::lua_State, index: c_int, bounds: Bounds) -> Value {
+    let mut reader = Reader { state, bytes: bounds.bytes, counted: COUNTED };
     unsafe { reader.value(ffi::lua_absindex(state, index), bounds.depth) }
 }
 
@@ -71,9 +55,7 @@ impl Reader {
             match ffi::lua_type(state, index) {
                 ffi::LUA_TNIL => Value::Null,
                 ffi::LUA_TBOOLEAN => Value::Bool(ffi::lua_toboolean(state, index) != 0),
-                ffi::LUA_TNUMBER if ffi::lua_isinteger(state, index) != 0 => {
-                    ffi::lua_tointeger(state, index).into()
-                }
+                ffi::LUA_TNUMBER if ffi::lua_isinteger(state, index) != 0 => ffi::lua_tointeger(state, index).into(),
                 ffi::LUA_TNUMBER => float(ffi::lua_tonumber(state, index)),
                 ffi::LUA_TSTRING => Value::String(self.string(index)),
                 ffi::LUA_TTABLE => self.table(index, depth),
@@ -139,9 +121,7 @@ impl Reader {
 
     /// Whether the keys are 1..count; an empty table is an object.
     unsafe fn is_array(&self, index: c_int, count: usize) -> bool {
-        count > 0
-            && unsafe { ffi::lua_rawlen(self.state, index) } == count
-            && unsafe { self.has(index, count) }
+        count > 0 && unsafe { ffi::lua_rawlen(self.state, index) } == count && unsafe { self.has(index, count) }
     }
 
     /// With a border at `count` and `count` entries, one missing in between means one somewhere else.
@@ -233,20 +213,36 @@ fn float(number: f64) -> Value {
 }
 
 /// A table's key: a copy, as Lua's own would have to stay on its stack.
-#[derive(PartialEq, PartialOrd)]
+#[derive(PartialEq, Eq, PartialOrd, Ord)]
 enum Key {
     Integer(i64),
-    Float(f64),
+    /// Never nan.
+    Float(Ordered),
     Text(Box<[u8]>),
     Bool(bool),
     Other(&'static str),
 }
 
-impl Eq for Key {}
+#[derive(Clone, Copy)]
+struct Ordered(f64);
 
-impl Ord for Key {
-    fn cmp(&self, other: &Self) -> std::cmp::Ordering {
-        self.partial_cmp(other).unwrap_or(std::cmp::Ordering::Equal)
+impl PartialEq for Ordered {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other).is_eq()
+    }
+}
+
+impl Eq for Ordered {}
+
+impl PartialOrd for Ordered {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+
+impl Ord for Ordered {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.0.total_cmp(&other.0)
     }
 }
 
@@ -255,10 +251,8 @@ impl Key {
     unsafe fn read(state: *mut ffi::lua_State) -> Self {
         unsafe {
             match ffi::lua_type(state, -1) {
-                ffi::LUA_TNUMBER if ffi::lua_isinteger(state, -1) != 0 => {
-                    Key::Integer(ffi::lua_tointeger(state, -1))
-                }
-                ffi::LUA_TNUMBER => Key::Float(ffi::lua_tonumber(state, -1)),
+                ffi::LUA_TNUMBER if ffi::lua_isinteger(state, -1) != 0 => Key::Integer(ffi::lua_tointeger(state, -1)),
+                ffi::LUA_TNUMBER => Key::Float(Ordered(ffi::lua_tonumber(state, -1))),
                 ffi::LUA_TSTRING => Key::Text(bytes_at(state, -1).into()),
                 ffi::LUA_TBOOLEAN => Key::Bool(ffi::lua_toboolean(state, -1) != 0),
                 kind => Key::Other(super::text::type_name(kind)),
@@ -269,7 +263,7 @@ impl Key {
     fn name(&self) -> String {
         match self {
             Key::Integer(key) => key.to_string(),
-            Key::Float(key) => key.to_string(),
+            Key::Float(Ordered(key)) => key.to_string(),
             Key::Text(key) => String::from_utf8_lossy(key).into_owned(),
             Key::Bool(key) => key.to_string(),
             Key::Other(kind) => (*kind).to_owned(),

@@ -19,12 +19,7 @@ pub(super) unsafe fn weight(state: *mut ffi::lua_State, index: c_int) -> usize {
     unsafe { weigh(state, index, DEPTH, &mut entries) }
 }
 
-unsafe fn weigh(
-    state: *mut ffi::lua_State,
-    index: c_int,
-    depth: usize,
-    entries: &mut usize,
-) -> usize {
+unsafe fn weigh(state: *mut ffi::lua_State, index: c_int, depth: usize, entries: &mut usize) -> usize {
     unsafe {
         match ffi::lua_type(state, index) {
             ffi::LUA_TSTRING => ffi::lua_rawlen(state, index),
@@ -36,20 +31,13 @@ unsafe fn weigh(
     }
 }
 
-unsafe fn weigh_table(
-    state: *mut ffi::lua_State,
-    index: c_int,
-    depth: usize,
-    entries: &mut usize,
-) -> usize {
+unsafe fn weigh_table(state: *mut ffi::lua_State, index: c_int, depth: usize, entries: &mut usize) -> usize {
     let mut sum = 0;
     unsafe {
         ffi::lua_pushnil(state);
         while ffi::lua_next(state, index) != 0 {
             let value = ffi::lua_gettop(state);
-            sum += ENTRY
-                + weigh(state, value - 1, 0, entries)
-                + weigh(state, value, depth - 1, entries);
+            sum += ENTRY + weigh(state, value - 1, 0, entries) + weigh(state, value, depth - 1, entries);
             ffi::lua_pop(state, 1);
             *entries = entries.saturating_sub(1);
             if *entries == 0 {

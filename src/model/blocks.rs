@@ -49,7 +49,7 @@ enum Access {
 fn unknown_name(program: &Program, block: usize, name: &NameUse, access: Access) -> Option<Diagnostic> {
     let block = &program.blocks[block];
     let is_bridge = program.bridges.iter().any(|bridge| *bridge.name == *name.name);
-    let is_at_hand = lua::known_names().any(|known| known == name.name);
+    let is_at_hand = lua::known_names().contains(&&*name.name);
     let span = place(program.source(block.span), block.span, name.line, Some((&name.name, Role::Name)));
     match access {
         Access::Read if is_bridge || is_at_hand => None,
@@ -60,7 +60,7 @@ fn unknown_name(program: &Program, block: usize, name: &NameUse, access: Access)
         _ => {
             let mut known: Vec<String> = Names::of(program).vars(block.machine).iter().map(ToString::to_string).collect();
             known.extend(program.bridges.iter().map(|bridge| bridge.name.to_string()));
-            known.extend(lua::known_names().map(ToString::to_string));
+            known.extend(lua::known_names().iter().map(ToString::to_string));
             let message = format!("`{}` is not a variable in scope here", name.name);
             let inside = program.vars.iter().find(|var| *var.name == *name.name);
             let help = match (inside, nearest(&name.name, known.iter().map(String::as_str))) {

@@ -29,7 +29,12 @@ impl Compiler {
             return Err(Rejected { diagnostics: vec![empty(&source)], sources: vec![source] });
         }
         let mut program = resolve(&parsed.tree, source, &self.robots, &mut self.checker);
-        let broken = broken || program.findings.iter().any(|finding| matches!(finding.code, Code::LuaSyntax | Code::Smalltalk));
+        let is_lua = |finding: &Diagnostic| matches!(finding.code, Code::LuaSyntax | Code::Smalltalk);
+        if broken {
+            // Forms that can't be read are missing from the tree: what refers to them is not to blame.
+            program.findings.retain(is_lua);
+        }
+        let broken = broken || program.findings.iter().any(is_lua);
         program.findings.splice(0..0, parsed.diagnostics);
         match broken {
             true => Err(Rejected { sources: program.sources, diagnostics: program.findings }),

@@ -8,7 +8,7 @@ use std::sync::mpsc::{Sender, channel};
 use super::engine_thread::{End, News};
 use super::live::{Session, Setup};
 use super::signals::{Signal, Signals};
-use super::trace::{Header, Trace};
+use super::trace::Trace;
 use crate::runtime::record::{Level, Load};
 use crate::runtime::{Record, What};
 
@@ -19,14 +19,13 @@ enum Event {
 
 /// Exit code 0: fine; 1: errors; 130: interrupted.
 pub fn run(setup: Setup, trace: Option<PathBuf>) -> ExitCode {
-    let mut trace = match trace.as_deref().map(Trace::create).transpose() {
+    let mut trace = match trace.as_deref().map(|path| Trace::create(path, setup.conditions())).transpose() {
         Ok(trace) => trace,
         Err(error) => return fail(&format!("the trace can't be written: {error}")),
     };
     let (events, inbox) = channel::<Event>();
     let signals: Sender<Event> = events.clone();
     let _signals = Signals::watch(move |signal| drop(signals.send(Event::Signal(signal))));
-    let (pacing, seed) = (setup.pacing.clone(), setup.options.seed);
     let session = match Session::start(setup, move |news| drop(events.send(Event::News(news)))) {
         Ok(session) => session,
         Err(why) => return fail(&why.to_string()),
@@ -36,9 +35,6 @@ pub fn run(setup: Setup, trace: Option<PathBuf>) -> ExitCode {
         match event {
             Event::News(News::Records(records)) => {
                 for record in &records {
-                    if let (What::Load(load), Some(trace), false) = (&record.what, &mut trace, outcome.loaded) {
-                        trace.header(&Header { files: &load.files, rate: pacing.rate.hz(), seed, clock: pacing.clock });
-                    }
                     outcome.see(record);
                     if let Some(trace) = &mut trace {
                         trace.record(record);
@@ -53,6 +49,7 @@ pub fn run(setup: Setup, trace: Option<PathBuf>) -> ExitCode {
                 }
             }
             Event::News(News::Ended(End::Failed(why))) => return fail(&format!("lrp failed and stopped the robot: {why}")),
+            Event::News(News::Stuck) => say(STUCK),
             Event::News(News::Ended(_)) => break,
             Event::Signal(Signal::Interrupt) => {
                 drop(session);
@@ -68,6 +65,9 @@ pub fn run(setup: Setup, trace: Option<PathBuf>) -> ExitCode {
     }
     ExitCode::from(u8::from(outcome.errors))
 }
+
+/// Said when a block can't be stopped.
+pub const STUCK: &str = "a block can't be stopped; the robot was halted, and the program waits for that block";
 
 fn fail(why: &str) -> ExitCode {
     eprintln!("lrp: {why}");

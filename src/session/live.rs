@@ -10,6 +10,7 @@ use super::compile::{Compiler, Rejected};
 use super::engine_thread::{Commands, EngineThread, News, Pacing};
 use super::loader::{self, Unreadable};
 use super::robots::{Robots, Workshop};
+use super::trace::Conditions;
 use super::watch::{Saved, Watch, Watched};
 use super::{findings, modules};
 use crate::model::Robot;
@@ -43,6 +44,12 @@ pub struct Setup {
     pub robots: Vec<Robot>,
 }
 
+impl Setup {
+    pub fn conditions(&self) -> Conditions {
+        Conditions { rate: self.pacing.rate.hz(), seed: self.options.seed, clock: self.pacing.clock }
+    }
+}
+
 /// Dropping it stops the robots and ends its threads.
 pub struct Session {
     _watch: Watch,
@@ -52,7 +59,7 @@ pub struct Session {
 impl Session {
     /// Starts the program of a file, whether it can be read as one or not: a save can mend it. Fails only where there is
     /// no text to be had.
-    pub fn start(setup: Setup, news: impl Fn(News) + Send + 'static) -> Result<Session, NotStarted> {
+    pub fn start(setup: Setup, news: impl Fn(News) + Clone + Send + 'static) -> Result<Session, NotStarted> {
         let source = match loader::read(&setup.file) {
             Err(Unreadable::Empty { .. }) => Source::new(setup.file.display().to_string(), ""),
             read => read.map_err(NotStarted::Unreadable)?,
@@ -79,7 +86,7 @@ impl Session {
 }
 
 pub fn folder(file: &Path) -> PathBuf {
-    file.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new(".")).to_path_buf()
+    file.parent().unwrap_or(Path::new("")).to_path_buf()
 }
 
 /// Compiles beside the engine's thread, which only takes finished programs over.

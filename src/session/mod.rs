@@ -13,4 +13,5 @@ pub mod robots;
 pub mod signals;
 pub mod test_runner;
 pub mod trace;
+pub mod warden;
 pub mod watch;

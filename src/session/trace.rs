@@ -7,18 +7,20 @@ use std::time::{SystemTime, UNIX_EPOCH};
 
 use serde::Serialize;
 
-use crate::runtime::Record;
 use crate::runtime::record;
+use crate::runtime::{Record, What};
 
 pub struct Trace {
     out: Box<dyn Write + Send>,
     path: PathBuf,
+    /// Until the header is written.
+    conditions: Option<Conditions>,
     broken: bool,
 }
 
 /// What the first line of a trace tells besides the program's texts.
-pub struct Header<'a> {
-    pub files: &'a [record::File],
+#[derive(Clone, Debug)]
+pub struct Conditions {
     pub rate: f64,
     pub seed: u64,
     pub clock: Clock,
@@ -45,23 +47,30 @@ pub enum Clock {
 
 impl Trace {
     /// `-` is standard output.
-    pub fn create(path: &Path) -> io::Result<Trace> {
+    pub fn create(path: &Path, conditions: Conditions) -> io::Result<Trace> {
         let out: Box<dyn Write + Send> = match path.to_str() {
             Some("-") => Box::new(BufWriter::new(io::stdout())),
             _ => Box::new(BufWriter::new(File::create(path)?)),
         };
-        Ok(Trace { out, path: path.to_path_buf(), broken: false })
+        Ok(Trace { out, path: path.to_path_buf(), conditions: Some(conditions), broken: false })
     }
 
-    pub fn header(&mut self, header: &Header) {
-        let start = (header.clock == Clock::Real).then(|| {
+    fn header(&mut self, conditions: &Conditions, files: &[record::File]) {
+        let start = (conditions.clock == Clock::Real).then(|| {
             let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
             now.as_millis() as u64
         });
-        self.line(&FirstLine { lrp: 1, start, rate: header.rate, seed: header.seed, files: header.files });
+        self.line(&FirstLine { lrp: 1, start, rate: conditions.rate, seed: conditions.seed, files });
     }
 
+    /// The header goes before the first one, with the program's texts where that is a load.
     pub fn record(&mut self, record: &Record) {
+        if let Some(conditions) = self.conditions.take() {
+            match &record.what {
+                What::Load(load) => self.header(&conditions, &load.files),
+                _ => self.header(&conditions, &[]),
+            }
+        }
         self.line(record);
     }
 

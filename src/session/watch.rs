@@ -174,8 +174,8 @@ impl<F: Fn(Saved)> Watching<F> {
                     .any(|place| place.file_name() == Some(name))
             });
             if concerned {
-                file.stir(happened.how, now);
                 file.look(Stamp::of(path), now);
+                file.stir(happened.how, now);
             }
         }
     }

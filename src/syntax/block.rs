@@ -175,8 +175,10 @@ impl<'a> Scan<'a> {
         culprit: fn(std::ops::Range<usize>) -> Culprit,
     ) -> BlockEnd {
         let opening = self.text[range.clone()]
-            .find(['\n', '\r'])
-            .map_or(range.end, |i| range.start + i);
+            .match_indices('[')
+            .nth(1)
+            .map_or(range.end, |(i, _)| range.start + i + 1);
+
         self.culprit.get_or_insert(culprit(range.start..opening));
         if self.candidate.is_none() {
             self.candidate = self.text[range.clone()]

@@ -21,14 +21,6 @@ impl Findings {
         self.list.len() >= MAX_DIAGNOSTICS
     }
 
-    pub fn len(&self) -> usize {
-        self.list.len()
-    }
-
-    pub fn truncate(&mut self, len: usize) {
-        self.list.truncate(len);
-    }
-
     /// The first of them that answers the description, to be changed in place.
     pub fn find(&mut self, wanted: impl Fn(&Diagnostic) -> bool) -> Option<&mut Diagnostic> {
         self.list.iter_mut().find(|diagnostic| wanted(diagnostic))

@@ -110,27 +110,61 @@ impl<'a> Form<'a> {
     }
 
     pub fn name(&mut self, what: &str) -> Option<Name> {
-        let node = self.expect(PieceKind::Word, what)?;
-        self.checked(node, what)
+        let node = self.word(what)?;
+        self.checked(node)
     }
 
     pub fn lua_name(&mut self, what: &str) -> Option<Name> {
-        let node = self.expect(PieceKind::Word, what)?;
-        self.lua_checked(node, what)
+        let node = self.word(what)?;
+        self.lua_checked(node)
     }
 
-    pub fn checked(&mut self, node: &Node, what: &str) -> Option<Name> {
-        match check_name(self.text.of(node), node.span(self.text.file), what) {
+    pub fn checked(&mut self, node: &Node) -> Option<Name> {
+        match check_name(self.text.of(node), node.span(self.text.file)) {
             Ok(()) => Some(self.text.name(node)),
             Err(diagnostic) => self.fail(diagnostic),
         }
     }
 
-    pub fn lua_checked(&mut self, node: &Node, what: &str) -> Option<Name> {
-        match check_lua_name(self.text.of(node), node.span(self.text.file), what) {
+    pub fn lua_checked(&mut self, node: &Node) -> Option<Name> {
+        match check_lua_name(self.text.of(node), node.span(self.text.file)) {
             Ok(()) => Some(self.text.name(node)),
             Err(diagnostic) => self.fail(diagnostic),
         }
+    }
+
+    /// The name of a form that holds others. Takes with it what is stuck to it or stands in its place.
+    pub fn title(&mut self, what: &str) -> Option<Name> {
+        let stuck = self.stuck_together();
+        let in_its_place = matches!(self.rest.first(), Some(Node::Leaf(_)));
+        let after = &self.rest[stuck.len().max(usize::from(in_its_place))..];
+        let name = match stuck {
+            [first, _, ..] if first.is(PieceKind::Word) => {
+                let last = &stuck[stuck.len() - 1];
+                let span = first.span(self.text.file).to(last.span(self.text.file));
+                match check_name(&self.text.text[span.range()], span) {
+                    Ok(()) => None,
+                    Err(diagnostic) => self.fail(diagnostic),
+                }
+            }
+            _ => self.name(what),
+        };
+        if name.is_none() {
+            self.rest = after;
+        }
+        name
+    }
+
+    /// The leaves up to the first white space, block or group.
+    fn stuck_together(&self) -> &'a [Node] {
+        let mut end = self.rest.first().map_or(0, |node| node.range().start);
+        let stuck = self.rest.iter().take_while(|node| {
+            let in_a_name = matches!(node, Node::Leaf(piece) if !matches!(piece.kind, PieceKind::Block | PieceKind::UnclosedBlock));
+            let follows = in_a_name && node.range().start == end;
+            end = node.range().end;
+            follows
+        });
+        &self.rest[..stuck.count()]
     }
 
     pub fn block(&mut self, what: &str) -> Option<Block> {
@@ -185,9 +219,9 @@ impl<'a> Form<'a> {
         }
     }
 
-    fn expect(&mut self, kind: PieceKind, what: &str) -> Option<&'a Node> {
+    fn word(&mut self, what: &str) -> Option<&'a Node> {
         match self.rest.first() {
-            Some(node) if node.is(kind) => self.next(),
+            Some(node) if node.is(PieceKind::Word) => self.next(),
             Some(node) => {
                 let diagnostic = self.unexpected(node, what);
                 self.fail(diagnostic)
@@ -233,7 +267,7 @@ impl<'a> Form<'a> {
         if node.is(PieceKind::Other) {
             error.code = Code::StrayCharacter;
         }
-        if node.is(PieceKind::Text) && !what.contains("quotes") {
+        if node.is(PieceKind::Text) {
             return error.help("names are written without quotes");
         }
         error
@@ -241,23 +275,43 @@ impl<'a> Form<'a> {
 
     /// Code, as it seems, without the brackets around it.
     fn bare_code(&self, node: &Node, what: &str) -> Diagnostic {
-        let code = self
-            .rest
-            .iter()
-            .take_while(|node| matches!(node, Node::Leaf(_)))
-            .last()
-            .unwrap_or(node);
-        let span = self.text.point(node).to(self.text.point(code));
+        let last = self.rest.last().unwrap_or(node);
+        let span = node.span(self.text.file).to(last.span(self.text.file));
         let written = &self.text.text[span.range()];
-        let one_line = !written.contains(['\n', '\r']);
-        let plausible = node.is(PieceKind::Word) || node.is(PieceKind::Text);
-        let has_block = self.rest.iter().any(|node| node.is(PieceKind::Block));
-        if plausible && one_line && !has_block {
-            let message = format!("{what} is a block of Lua, in square brackets");
-            return self
-                .error(span, message)
-                .help(format!("write `[{}]`", shortened(written)));
+        let is_code = |node: &Node| match node {
+            Node::Leaf(piece) => !matches!(
+                piece.kind,
+                PieceKind::Block | PieceKind::UnclosedBlock | PieceKind::UnclosedText
+            ),
+            Node::Group(group) => group.keyword.is_none(),
+        };
+        let begins =
+            node.is(PieceKind::Word) || node.is(PieceKind::Text) || matches!(node, Node::Group(_));
+        if !begins || written.contains(['\n', '\r']) || !self.rest.iter().all(is_code) {
+            return self.unexpected(node, what);
         }
-        self.unexpected(node, what)
+        if self.keyword == Keyword::Onentry && self.text.of(node) == Keyword::Spawn.name() {
+            return self
+                .error(span, "a `spawn` has brackets of its own")
+                .help(format!("write `({})`", shortened(written)));
+        }
+        let message = format!("{what} belongs in square brackets: it is a block of Lua");
+        self.error(span, message)
+            .help(format!("write `[{}]`", shortened(&self.in_lua(written))))
+    }
+
+    /// A line of Smalltalk as it is written in Lua, as far as assignments and comparisons go.
+    fn in_lua(&self, code: &str) -> String {
+        if code.contains(":=") {
+            return code.replace(":=", "=");
+        }
+        let compared = self.keyword == Keyword::Event
+            && !code.contains(['~', '<', '>'])
+            && !code.contains("==");
+        if compared {
+            code.replace('=', "==")
+        } else {
+            code.to_string()
+        }
     }
 }

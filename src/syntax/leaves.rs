@@ -5,10 +5,13 @@ use std::sync::Arc;
 use super::ast::{Block, Bridge, Event, Export, Import, Name, Spawn, Var};
 use super::diagnostic::{Code, Diagnostic};
 use super::form::Form;
+use super::keyword::Keyword;
+use super::names::shortened;
 use super::pieces::PieceKind;
+use super::reader::Node;
 
 pub fn bridge(form: &mut Form) -> Option<Bridge> {
-    let name = form.lua_name("a bridge's name")?;
+    let name = form.lua_name("the bridge's name")?;
     let kind = form.name("the kind of robot")?;
     let config = if form.rest.is_empty() {
         None
@@ -28,7 +31,7 @@ pub fn import(form: &mut Form) -> Option<Import> {
     let Some(node) = form.next_if(PieceKind::Text) else {
         let diagnostic = match form.rest {
             [] => form.missing("a file's name in quotes"),
-            [node, ..] => form.unexpected(node, "a file's name in quotes"),
+            [node, ..] => no_quotes(form, node),
         };
         return form.fail(diagnostic);
     };
@@ -50,6 +53,17 @@ pub fn import(form: &mut Form) -> Option<Import> {
     })
 }
 
+fn no_quotes(form: &Form, node: &Node) -> Diagnostic {
+    let error = form.unexpected(node, "a file's name in quotes");
+    if node.is(PieceKind::Word) {
+        return error.help(format!(
+            "write `(import \"{}\")`",
+            shortened(form.text.of(node))
+        ));
+    }
+    error.help("a file's name is written in quotes of one kind: `\"file.lrp\"` or `'file.lrp'`")
+}
+
 pub fn export(form: &mut Form) -> Option<Export> {
     let machine = form.name("the name of a machine")?;
     form.finish();
@@ -60,7 +74,7 @@ pub fn export(form: &mut Form) -> Option<Export> {
 }
 
 pub fn var(form: &mut Form) -> Option<Var> {
-    let name = form.lua_name("a variable")?;
+    let name = form.lua_name("the variable's name")?;
     let init = if form.next_if(PieceKind::Assign).is_some() {
         form.block("the initial value")
     } else {
@@ -98,16 +112,21 @@ fn no_assignment(form: &Form, name: &Name) -> Diagnostic {
                 form.text.of(node)
             ),
         ),
+        [node] if node.is(PieceKind::Word) || node.is(PieceKind::Text) => {
+            let value = shortened(form.text.of(node));
+            form.unexpected(node, "`:=`")
+                .help(format!("write `(var {} := [{value}])`", name.text))
+        }
         [node, ..] => form.unexpected(node, "`:=`"),
     }
 }
 
-fn assigns_otherwise(form: &Form, node: &super::reader::Node) -> bool {
+fn assigns_otherwise(form: &Form, node: &Node) -> bool {
     node.is(PieceKind::Other) && matches!(form.text.of(node), "=" | ":")
 }
 
 pub fn event(form: &mut Form) -> Option<Event> {
-    let name = form.name("an event")?;
+    let name = form.name("the event's name")?;
     let block = match form.rest {
         [node, ..] if assigns_otherwise(form, node) => {
             let diagnostic = form
@@ -120,7 +139,7 @@ pub fn event(form: &mut Form) -> Option<Event> {
         }
         _ => {
             form.next_if(PieceKind::Assign);
-            form.block("its condition")
+            form.block("the condition")
         }
     };
     if block.is_some() {
@@ -146,7 +165,7 @@ pub fn spawn(form: &mut Form) -> Option<Spawn> {
 
 /// `(running [b])`, `(onexit [b])`, `(onpause [b])`, `(onresume [b])`
 pub fn action(form: &mut Form) -> Option<Block> {
-    let block = form.block("its action")?;
+    let block = form.block("the action")?;
     one_action(form);
     Some(block)
 }
@@ -157,14 +176,15 @@ pub fn one_action(form: &mut Form) {
         && node.is(PieceKind::Block)
     {
         let keyword = form.keyword.name();
-        let diagnostic = Diagnostic::error(
-            Code::BadForm,
-            form.text.point(node),
-            format!("`{keyword}` takes one block"),
-        )
-        .help(format!(
-            "write another `({keyword} [..])` after this one, or put both in one block"
-        ));
+        let help = match form.keyword {
+            Keyword::Onpause | Keyword::Onresume => "put both in one block".to_string(),
+            _ => {
+                format!("write another `({keyword} [..])` after this one, or put both in one block")
+            }
+        };
+        let message = format!("`{keyword}` takes one block");
+        let diagnostic =
+            Diagnostic::error(Code::BadForm, form.text.point(node), message).help(help);
         form.fail::<()>(diagnostic);
     }
     form.finish();

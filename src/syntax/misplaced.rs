@@ -126,12 +126,6 @@ pub fn outside(text: Text, nodes: &[Node], place: Place) -> Diagnostic {
             "a comment begins with `;`, a form with `(`".to_string(),
         )
     };
-    let message = match nodes {
-        [_] => format!("{} can't stand by itself {place}", text.describe(first)),
-        _ => format!(
-            "{} and what follows can't stand by itself {place}",
-            text.describe(first)
-        ),
-    };
+    let message = format!("{} can't stand by itself {place}", text.describe(first));
     Diagnostic::error(code, text.span(start, end), message).help(help)
 }

@@ -2,6 +2,7 @@
 
 pub mod ast;
 pub mod diagnostic;
+pub mod findings;
 pub mod keyword;
 pub mod lua_tokens;
 pub mod nearest;
@@ -12,7 +13,6 @@ pub mod render;
 pub mod source;
 
 mod block;
-mod findings;
 mod form;
 mod layout;
 mod leaves;
@@ -20,6 +20,7 @@ mod misplaced;
 mod names;
 mod repair;
 mod transition;
+mod window;
 
 pub use diagnostic::{Code, Diagnostic, Severity};
 pub use parser::{Parsed, parse};

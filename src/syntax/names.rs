@@ -5,39 +5,28 @@ use super::lua_tokens::{is_keyword, is_name};
 use super::source::Span;
 
 /// Names of machines, states, events and the like: letters, digits, `_` and `-`.
-pub fn check_name(word: &str, span: Span, what: &str) -> Result<(), Diagnostic> {
-    let help = "use letters, digits, `_` and `-`";
-    if let Some(c) = word.chars().find(|&c| !is_name_char(c)) {
-        let message = format!("`{}` can't name {what}: it holds `{c}`", shortened(word));
-        return Err(Diagnostic::error(Code::BadName, span, message).help(help));
-    }
-    if !word.contains(|c| c != '-') {
-        let message = format!(
-            "`{}` can't name {what}: it has no letter or digit",
-            shortened(word)
-        );
-        return Err(Diagnostic::error(Code::BadName, span, message).help(help));
-    }
-    Ok(())
+pub fn check_name(word: &str, span: Span) -> Result<(), Diagnostic> {
+    let reason = match word.chars().find(|&c| !is_name_char(c)) {
+        Some(c) => format!("it holds `{c}`"),
+        None if word.contains(|c| c != '-') => return Ok(()),
+        None => "it has no letter or digit".to_string(),
+    };
+    let message = format!("`{}` can't be a name: {reason}", shortened(word));
+    Err(Diagnostic::error(Code::BadName, span, message).help("use letters, digits, `_` and `-`"))
 }
 
 /// Names that blocks see: they must be Lua's.
-pub fn check_lua_name(word: &str, span: Span, what: &str) -> Result<(), Diagnostic> {
+pub fn check_lua_name(word: &str, span: Span) -> Result<(), Diagnostic> {
     let shown = shortened(word);
     if is_keyword(word) {
-        let message =
-            format!("`{shown}` can't name {what}: it is a keyword of Lua, and blocks use the name");
+        let message = format!("`{shown}` is a keyword of Lua, so blocks couldn't use it as a name");
         return Err(Diagnostic::error(Code::BadName, span, message)
             .help(format!("choose another, such as `{word}_`")));
     }
     if !is_name(word) {
-        let message = format!(
-            "`{shown}` can't name {what}: blocks use the name, so it must be a name in Lua"
-        );
+        let message = format!("`{shown}` is no name in Lua, so blocks couldn't use it");
         let help = match suggestion(word) {
-            Some(better) => {
-                format!("use letters, digits and `_`, not beginning with a digit: `{better}`")
-            }
+            Some(better) => format!("write `{better}`"),
             None => {
                 "use the letters a to z, digits and `_`, not beginning with a digit".to_string()
             }

@@ -8,6 +8,7 @@ use super::form::{Form, Text};
 use super::keyword::{Keyword, Place};
 use super::leaves::{action, bridge, event, export, import, one_action, spawn, var};
 use super::misplaced::{bad_first_node, misplaced, outside, unknown};
+use super::pieces::{PieceKind, control_characters};
 use super::reader::{Close, Group, Node, read};
 use super::source::{FileId, Source, Span};
 use super::transition::transition;
@@ -34,6 +35,12 @@ pub fn parse(source: &Source, file: FileId) -> Parsed {
         );
         let error = Diagnostic::error(Code::TooLarge, Span::new(file, 0, 0), message)
             .help("check that this is the right file");
+        return Parsed {
+            tree: Tree::default(),
+            diagnostics: vec![error],
+        };
+    }
+    if let Some(error) = control_characters(text, file) {
         return Parsed {
             tree: Tree::default(),
             diagnostics: vec![error],
@@ -121,11 +128,7 @@ impl<'a> Parser<'a> {
         if let Some(keyword) = group.keyword {
             return Some((keyword, Reading::Sure));
         }
-        let Some(first) = group
-            .nodes
-            .first()
-            .filter(|node| node.is(super::pieces::PieceKind::Word))
-        else {
+        let Some(first) = group.nodes.first().filter(|node| node.is(PieceKind::Word)) else {
             if !group.hurt {
                 let diagnostic = bad_first_node(self.text, group, place);
                 self.findings.add(diagnostic);
@@ -171,7 +174,7 @@ impl<'a> Parser<'a> {
     }
 
     fn machine(&mut self, form: &mut Form<'a>) -> Option<Machine> {
-        let name = form.name("the machine's name");
+        let name = form.title("the machine's name");
         let items = self.items(form.group, form.rest, Place::Machine, Parser::machine_item);
         Some(Machine {
             span: form.span(),
@@ -193,7 +196,7 @@ impl<'a> Parser<'a> {
     }
 
     fn state(&mut self, form: &mut Form<'a>) -> Option<State> {
-        let name = form.name("the state's name");
+        let name = form.title("the state's name");
         let items = self.items(form.group, form.rest, Place::State, Parser::state_item);
         Some(State {
             span: form.span(),
@@ -214,7 +217,7 @@ impl<'a> Parser<'a> {
 
     fn entry(&mut self, form: &mut Form<'a>) -> Option<Entry> {
         let Some(Node::Group(group)) = form.rest.first() else {
-            let block = form.block("its action")?;
+            let block = form.block("the action")?;
             one_action(form);
             return Some(Entry::Action(block));
         };

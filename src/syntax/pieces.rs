@@ -4,6 +4,7 @@
 use super::block::{BlockEnd, Culprit, end_of_block};
 use super::diagnostic::{Code, Diagnostic};
 use super::findings::Findings;
+use super::keyword::Keyword;
 use super::layout::column;
 use super::source::{FileId, Span};
 
@@ -58,7 +59,6 @@ impl Piece {
 
 /// Cuts up the whole text; what is wrong with single pieces is added to the findings.
 pub fn pieces(text: &str, file: FileId, findings: &mut Findings) -> Vec<Piece> {
-    report_control_characters(text, file, findings);
     let mut cutter = Cutter {
         text,
         file,
@@ -80,11 +80,10 @@ pub fn pieces(text: &str, file: FileId, findings: &mut Findings) -> Vec<Piece> {
     cutter.pieces
 }
 
-fn report_control_characters(text: &str, file: FileId, findings: &mut Findings) {
+/// What to say of a text with control characters in it: it is hardly a program, and nothing more is said of it.
+pub fn control_characters(text: &str, file: FileId) -> Option<Diagnostic> {
     let mut controls = text.char_indices().filter(|&(_, c)| is_control(c));
-    let Some((at, first)) = controls.next() else {
-        return;
-    };
+    let (at, first) = controls.next()?;
     let more = match controls.count() {
         0 => String::new(),
         1 => ", and another one further on".to_string(),
@@ -96,14 +95,12 @@ fn report_control_characters(text: &str, file: FileId, findings: &mut Findings) 
     } else {
         format!("control character U+{:04X}", first as u32)
     };
-    findings.add(
-        Diagnostic::error(
-            Code::StrayCharacter,
-            span,
-            format!("a {name} stands here{more}"),
-        )
-        .help("a program is plain text: remove it, or check that this is the right file"),
+    let error = Diagnostic::error(
+        Code::StrayCharacter,
+        span,
+        format!("a {name} stands here{more}"),
     );
+    Some(error.help("a program is plain text: remove it, or check that this is the right file"))
 }
 
 fn is_control(c: char) -> bool {
@@ -255,23 +252,23 @@ impl Cutter<'_> {
     fn quoted(&mut self, quote: char, findings: &mut Findings) -> PieceKind {
         let start = self.at;
         let rest = &self.text[start + 1..];
-        let line = &rest[..rest.find(['\n', '\r']).unwrap_or(rest.len())];
-        if let Some(i) = line.find(quote) {
-            return self.take(i + 2, PieceKind::Text);
+        let end = rest.find(['\n', '\r', ';', quote]).unwrap_or(rest.len());
+        if rest[end..].starts_with(quote) {
+            return self.take(end + 2, PieceKind::Text);
         }
+        let line = &rest[..end];
         let other = if quote == '"' { '\'' } else { '"' };
         let (length, help) = match line.find(other) {
             Some(i) => (
                 i + 1,
                 format!("it begins with `{quote}`, so end it with `{quote}` too"),
             ),
-            None => {
-                let end = line.find([')', ';']).unwrap_or(line.len());
-                (
-                    line[..end].trim_end().len(),
-                    format!("add `{quote}` where it ends: a string can't go on in the next line"),
-                )
-            }
+            None => (
+                line[..line.find(')').unwrap_or(line.len())]
+                    .trim_end()
+                    .len(),
+                self.where_to_close(quote, &rest[end..]),
+            ),
         };
         self.at += 1 + length;
         findings.add(
@@ -283,6 +280,19 @@ impl Cutter<'_> {
             .help(help),
         );
         PieceKind::UnclosedText
+    }
+
+    fn where_to_close(&self, quote: char, after: &str) -> String {
+        let last = self.pieces.iter().rev().find(|piece| !piece.is_trivia());
+        if last.is_none_or(|piece| &self.text[piece.range()] != Keyword::Import.name()) {
+            return format!("only a file's name after `import` has quotes: remove `{quote}`");
+        }
+        let reason = if after.starts_with(';') {
+            "`;` begins a comment"
+        } else {
+            "it can't go on in the next line"
+        };
+        format!("add `{quote}` where the string ends: {reason}")
     }
 
     fn block(&mut self, findings: &mut Findings) -> PieceKind {

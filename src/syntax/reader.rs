@@ -101,14 +101,12 @@ pub fn read(text: &str, file: FileId, findings: &mut Findings) -> Group {
         return by_brackets.root;
     }
     let by_layout = Builder::build(text, &pieces, Trust::Layout);
-    let balanced = by_brackets.repairs.is_empty();
-    let layout_is_better = by_layout.complaints < by_brackets.complaints
-        || (by_layout.complaints == by_brackets.complaints && !balanced);
-    let best = if layout_is_better {
+    let best = if by_layout.complaints <= by_brackets.complaints {
         by_layout
     } else {
         by_brackets
     };
+
     report(best.repairs, text, file, findings);
     best.root
 }
@@ -153,6 +151,7 @@ impl<'a> Builder<'a> {
                     builder.open(piece, keyword_after(text, &pieces[i + 1..]), trust)
                 }
                 PieceKind::Close => builder.close(piece, trust),
+                PieceKind::Junk if builder.beyond == 0 => builder.junk(),
                 _ if piece.is_trivia() || builder.beyond > 0 => {}
                 _ => builder.leaf(piece),
             }
@@ -167,7 +166,7 @@ impl<'a> Builder<'a> {
     fn open_beyond(&mut self, piece: Piece) {
         self.beyond += 1;
         if self.beyond == 1 {
-            self.top().hurt = true;
+            self.stack.iter_mut().for_each(|group| group.hurt = true);
             if !self
                 .repairs
                 .iter()
@@ -219,6 +218,12 @@ impl<'a> Builder<'a> {
         top.nodes.push(Node::Leaf(piece));
     }
 
+    fn junk(&mut self) {
+        if let Some(group) = self.stack.last_mut() {
+            group.hurt = true;
+        }
+    }
+
     pub(super) fn top(&mut self) -> &mut Group {
         self.stack.last_mut().unwrap_or(&mut self.root)
     }
@@ -250,7 +255,9 @@ impl<'a> Builder<'a> {
             let Some(group) = self.stack.pop() else { break };
             add_at = add_at.max(group.end);
             // An unclosed block or string took the bracket with it.
-            if !group.hurt {
+            let swallowed =
+                |node: &Node| node.is(PieceKind::UnclosedBlock) || node.is(PieceKind::UnclosedText);
+            if !group.nodes.iter().any(swallowed) {
                 opened.push(group.start..self.head_end(&group));
             }
             self.add(group);

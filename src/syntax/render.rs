@@ -1,9 +1,10 @@
 //! Diagnostics as text, in the form of a compiler's. Prints nothing itself.
 
-use annotate_snippets::{AnnotationKind, Element, Group, Level, Renderer, Snippet};
+use annotate_snippets::{Annotation, AnnotationKind, Element, Group, Level, Renderer, Snippet};
 
 use super::diagnostic::{Diagnostic, Severity};
-use super::source::{FileId, Source, Span};
+use super::source::{Source, Span};
+use super::window::Window;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Style {
@@ -11,10 +12,13 @@ pub enum Style {
     Colour,
 }
 
+/// Bytes; of a longer line only a part is shown.
+pub(super) const LONG_LINE: usize = 2 * WIDTH;
+
 /// Columns that a rendered line may take; what is longer is cut around the place that matters.
 const WIDTH: usize = 100;
 
-/// Each diagnostic with its lines of the program, in the order of the program. `sources` is indexed by `FileId`.
+/// Each diagnostic with its lines of the program, one after another with an empty line between, in the order of the program. `sources` is indexed by `FileId`.
 pub fn render(diagnostics: &[Diagnostic], sources: &[Source], style: Style) -> String {
     let renderer = match style {
         Style::Plain => Renderer::plain(),
@@ -23,12 +27,10 @@ pub fn render(diagnostics: &[Diagnostic], sources: &[Source], style: Style) -> S
     .term_width(WIDTH);
     let mut sorted: Vec<&Diagnostic> = diagnostics.iter().collect();
     sorted.sort_by_key(|diagnostic| diagnostic.span);
-    let mut out = String::new();
-    for diagnostic in sorted {
-        out.push_str(&renderer.render(&[report(diagnostic, sources)]));
-        out.push_str("\n\n");
-    }
-    out
+    let reports = sorted
+        .iter()
+        .map(|diagnostic| renderer.render(&[report(diagnostic, sources)]) + "\n");
+    reports.collect::<Vec<_>>().join("\n")
 }
 
 /// `file:3:7: error: message`
@@ -64,9 +66,9 @@ fn report<'a>(diagnostic: &'a Diagnostic, sources: &'a [Source]) -> Group<'a> {
         .primary_title(diagnostic.message.as_str())
         .id(diagnostic.code.name());
     let mut elements: Vec<Element> = Vec::new();
-    for file in files(diagnostic) {
-        if let Some(source) = sources.get(file.0 as usize) {
-            elements.push(excerpt(diagnostic, file, source).into());
+    for marks in excerpts(diagnostic, sources) {
+        if let Some(source) = sources.get(marks[0].span.file.0 as usize) {
+            elements.push(excerpt(&marks, source).into());
         }
     }
     if let Some(help) = &diagnostic.help {
@@ -75,79 +77,59 @@ fn report<'a>(diagnostic: &'a Diagnostic, sources: &'a [Source]) -> Group<'a> {
     title.elements(elements)
 }
 
-/// The files a diagnostic points into, its own first.
-fn files(diagnostic: &Diagnostic) -> Vec<FileId> {
-    let mut files = vec![diagnostic.span.file];
-    for (span, _) in &diagnostic.also {
-        if !files.contains(&span.file) {
-            files.push(span.file);
+/// A place to point at, with what is said there; nothing at the diagnostic's own.
+#[derive(Clone, Copy)]
+pub(super) struct Mark<'a> {
+    pub span: Span,
+    pub label: Option<&'a str>,
+}
+
+/// The places a diagnostic points at, its own first, by what is shown together: all of one file, unless a line is too long for that.
+fn excerpts<'a>(diagnostic: &'a Diagnostic, sources: &[Source]) -> Vec<Vec<Mark<'a>>> {
+    let own = Mark {
+        span: diagnostic.span,
+        label: None,
+    };
+    let also = diagnostic.also.iter().map(|(span, what)| Mark {
+        span: *span,
+        label: Some(what),
+    });
+    let mut excerpts: Vec<Vec<Mark>> = Vec::new();
+    for mark in std::iter::once(own).chain(also) {
+        let together = |marks: &&mut Vec<Mark>| {
+            marks[0].span.file == mark.span.file
+                && !is_long(marks[0].span, sources)
+                && !is_long(mark.span, sources)
+        };
+        match excerpts.iter_mut().find(together) {
+            Some(marks) => marks.push(mark),
+            None => excerpts.push(vec![mark]),
         }
     }
-    files
+    excerpts
 }
 
-/// The lines of one file that a diagnostic points into, with its marks.
-fn excerpt<'a>(
-    diagnostic: &'a Diagnostic,
-    file: FileId,
-    source: &'a Source,
-) -> Snippet<'a, annotate_snippets::Annotation<'a>> {
-    let also = diagnostic.also.iter().filter(|(span, _)| span.file == file);
-    let marks = (diagnostic.span.file == file)
-        .then_some(diagnostic.span)
-        .into_iter()
-        .chain(also.clone().map(|(span, _)| *span));
-    let lines: Vec<usize> = marks.map(|span| source.line(span.start as usize)).collect();
-    let first = lines.iter().copied().min().unwrap_or(1);
-    let last = lines.iter().copied().max().unwrap_or(1);
-    let window = Window::new(source, first, last);
-    let mut snippet = Snippet::source(window.text.clone())
+/// Whether a place lies in a line that can only be shown in part.
+fn is_long(span: Span, sources: &[Source]) -> bool {
+    let source = sources.get(span.file.0 as usize);
+    source
+        .is_some_and(|source| source.line_range(source.line(span.start as usize)).len() > LONG_LINE)
+}
+
+/// The lines of one file that hold these marks.
+fn excerpt<'a>(marks: &[Mark<'a>], source: &'a Source) -> Snippet<'a, Annotation<'a>> {
+    let window = Window::new(source, marks);
+    let annotations = marks.iter().map(|mark| {
+        let place = window.place(source, mark.span);
+        match mark.label {
+            Some(label) => AnnotationKind::Context.span(place).label(label),
+            None => AnnotationKind::Primary.span(place),
+        }
+    });
+    let annotations: Vec<Annotation> = annotations.collect();
+    Snippet::source(window.text)
         .path(&*source.name)
-        .line_start(first)
-        .fold(true);
-    if diagnostic.span.file == file {
-        snippet =
-            snippet.annotation(AnnotationKind::Primary.span(window.place(source, diagnostic.span)));
-    }
-    for (span, what) in also {
-        snippet = snippet.annotation(
-            AnnotationKind::Context
-                .span(window.place(source, *span))
-                .label(what.as_str()),
-        );
-    }
-    snippet
-}
-
-/// Whole lines of a text, with a line feed after each whatever ended it in the text.
-struct Window {
-    text: String,
-    start: usize,
-}
-
-impl Window {
-    fn new(source: &Source, first: usize, last: usize) -> Self {
-        let bom = if first == 1 && source.text.starts_with('\u{feff}') {
-            '\u{feff}'.len_utf8()
-        } else {
-            0
-        };
-        let start = source.line_range(first).start + bom;
-        let end = source.line_range(last).end;
-        // A carriage return becomes one character as well, so that places stay the same.
-        let text = source.text[start..end.max(start)]
-            .replace("\r\n", " \n")
-            .replace('\r', "\n");
-        Window { text, start }
-    }
-
-    /// A span's place in the window, cut off where its first line ends.
-    fn place(&self, source: &Source, span: Span) -> std::ops::Range<usize> {
-        let line = source.line_range(source.line(span.start as usize));
-        let start = (span.start as usize)
-            .min(line.end)
-            .saturating_sub(self.start);
-        let end = (span.end as usize).min(line.end).saturating_sub(self.start);
-        start.min(self.text.len())..end.clamp(start, self.text.len().max(start))
-    }
+        .line_start(window.first)
+        .fold(true)
+        .annotations(annotations)
 }

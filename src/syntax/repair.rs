@@ -121,25 +121,31 @@ impl Builder<'_> {
 
 /// Adds what was repaired to the findings.
 pub(super) fn report(repairs: Vec<Repair>, text: &str, file: FileId, findings: &mut Findings) {
-    let mut removed: Vec<Range<u32>> = Vec::new();
+    let mut removed = Vec::new();
     for repair in repairs {
         match repair {
             Repair::Close { opened, add_at } => findings.add(unclosed(&opened, add_at, text, file)),
             Repair::TooDeep { at } => findings.add(too_deep(span(file, &(at..at + 1)))),
-            Repair::Remove { at } => match removed.last_mut() {
-                Some(run) if text[run.end as usize..at as usize].trim().is_empty() => {
-                    run.end = at + 1
-                }
-                _ => removed.push(at..at + 1),
-            },
+            Repair::Remove { at } => removed.push(at),
         }
     }
-    for run in removed {
-        findings.add(stray(
-            span(file, &run),
-            &text[run.start as usize..run.end as usize],
-        ));
+    for run in runs(removed, text) {
+        let brackets = &text[run.start as usize..run.end as usize];
+        findings.add(stray(span(file, &run), brackets));
     }
+}
+
+/// Brackets with nothing but white space between them, taken together.
+fn runs(mut brackets: Vec<u32>, text: &str) -> Vec<Range<u32>> {
+    brackets.sort_unstable();
+    let mut runs: Vec<Range<u32>> = Vec::new();
+    for at in brackets {
+        match runs.last_mut() {
+            Some(run) if text[run.end as usize..at as usize].trim().is_empty() => run.end = at + 1,
+            _ => runs.push(at..at + 1),
+        }
+    }
+    runs
 }
 
 fn span(file: FileId, range: &Range<u32>) -> Span {
@@ -188,6 +194,9 @@ fn stray(span: Span, brackets: &str) -> Diagnostic {
     } else {
         format!("these {count} `)` close nothing")
     };
-    Diagnostic::error(Code::StrayBracket, span, message)
-        .help("remove it, or add the `(` that it should close")
+    Diagnostic::error(Code::StrayBracket, span, message).help(if count == 1 {
+        "remove it, or add the `(` that it should close"
+    } else {
+        "remove them, or add each `(` that they should close"
+    })
 }

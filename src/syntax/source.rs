@@ -54,7 +54,7 @@ pub struct Source {
     line_starts: Arc<[u32]>,
 }
 
-/// One-based line and column; the column counts characters.
+/// One-based line and column; the column counts characters, but not a byte order mark.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub struct Position {
     pub line: usize,
@@ -84,7 +84,12 @@ impl Source {
 
     pub fn position(&self, offset: usize) -> Position {
         let line = self.line(offset);
-        let start = self.line_starts[line - 1] as usize;
+        let mark = if line == 1 && self.text.starts_with('\u{feff}') {
+            '\u{feff}'.len_utf8()
+        } else {
+            0
+        };
+        let start = self.line_starts[line - 1] as usize + mark;
         let before = self
             .text
             .get(start..offset.min(self.text.len()))

@@ -1,6 +1,6 @@
 //! The four forms of a transition: `on`, `eps`, `ontime`, `exit`. Knows how they are written, not what they do.
 
-use super::ast::{Sources, Timeout, Transition, TransitionKind, Trigger};
+use super::ast::{Name, Sources, Timeout, Transition, TransitionKind, Trigger};
 use super::diagnostic::{Code, Diagnostic};
 use super::form::Form;
 use super::keyword::Keyword;
@@ -30,11 +30,7 @@ pub fn transition(form: &mut Form) -> Option<Transition> {
     };
     let sources = source(form, sources)?;
     let target = form.name("a target state")?;
-    let name = if form.rest.is_empty() {
-        None
-    } else {
-        Some(form.name("the transition's name")?)
-    };
+    let name = name(form);
     form.finish();
     Some(Transition {
         span: form.span(),
@@ -43,6 +39,21 @@ pub fn transition(form: &mut Form) -> Option<Transition> {
         target,
         name,
     })
+}
+
+fn name(form: &mut Form) -> Option<Name> {
+    if let Some(arrow) = form.next_if(PieceKind::Arrow) {
+        let diagnostic = form.error(
+            arrow.span(form.text.file),
+            "a transition has one target only",
+        );
+        return form.fail(diagnostic.help("write a transition of its own for the next step"));
+    }
+    if form.rest.is_empty() {
+        None
+    } else {
+        form.name("the transition's name")
+    }
 }
 
 /// Takes everything up to the arrow, and the arrow.
@@ -86,11 +97,11 @@ fn split<'a>(
     let keyword = form.keyword.name();
     let message = match before {
         [first, rest @ ..] if !rest.is_empty() => return Some((first, rest)),
-        [Node::Leaf(piece)] if piece.kind == PieceKind::Word => {
-            format!("`{keyword}` lacks {what} or a source state before `->`")
-        }
-        [node] if node.is(PieceKind::Block) => {
+        [node] if node.is(PieceKind::Block) || is_number(form, node) => {
             format!("`{keyword}` lacks a source state before `->`")
+        }
+        [node] if node.is(PieceKind::Word) => {
+            format!("`{keyword}` lacks {what} or a source state before `->`")
         }
         [_] => format!(
             "`{keyword}` lacks {what} before `{}`",
@@ -100,6 +111,10 @@ fn split<'a>(
     };
     let diagnostic = at_arrow(form, before, message);
     form.fail(diagnostic)
+}
+
+fn is_number(form: &Form, node: &Node) -> bool {
+    form.keyword == Keyword::Ontime && form.text.of(node).starts_with(|c: char| c.is_ascii_digit())
 }
 
 /// An error that points at the arrow, which is the last thing taken.
@@ -116,7 +131,7 @@ fn trigger(form: &mut Form, node: &Node) -> Option<Trigger> {
         let diagnostic = form.unexpected(node, "an event or a block");
         return form.fail(diagnostic);
     }
-    form.checked(node, "an event").map(Trigger::Event)
+    form.checked(node).map(Trigger::Event)
 }
 
 fn timeout(form: &mut Form, node: &Node) -> Option<Timeout> {
@@ -129,7 +144,7 @@ fn timeout(form: &mut Form, node: &Node) -> Option<Timeout> {
     }
     let word = form.text.of(node);
     if !word.starts_with(|c: char| c.is_ascii_digit() || matches!(c, '-' | '.')) {
-        return form.lua_checked(node, "a variable").map(Timeout::Variable);
+        return form.lua_checked(node).map(Timeout::Variable);
     }
     let span = node.span(form.text.file);
     match milliseconds(word) {
@@ -179,7 +194,7 @@ fn milliseconds(word: &str) -> Result<f64, (String, String)> {
 
 fn source(form: &mut Form, nodes: &[Node]) -> Option<Sources> {
     match nodes {
-        [node] if node.is(PieceKind::Word) => form.checked(node, "a state").map(Sources::One),
+        [node] if node.is(PieceKind::Word) => form.checked(node).map(Sources::One),
         [node] if node.is(PieceKind::Star) => Some(Sources::Any(node.span(form.text.file))),
         [Node::Group(group)] => list(form, group),
         [node] => {
@@ -220,7 +235,7 @@ fn list(form: &mut Form, group: &Group) -> Option<Sources> {
                 .help("a list of sources is written `(a b c)`; `*` alone stands for any state");
             return form.fail(diagnostic);
         }
-        states.push(form.checked(node, "a state")?);
+        states.push(form.checked(node)?);
     }
     Some(Sources::Some(states))
 }
@@ -248,9 +263,11 @@ fn too_many(form: &Form, nodes: &[Node]) -> Diagnostic {
         (Keyword::Eps, [event, state]) => error.help(format!(
             "for an event write `(on {event} {state} -> ..)`; {list}"
         )),
-        (Keyword::Ontime, ["ms", state]) => error.help(format!(
-            "timeouts are in milliseconds already: leave `ms` out before `{state}`"
-        )),
+        (Keyword::Ontime, [unit @ ("ms" | "milliseconds" | "s" | "sec" | "seconds"), _]) => error
+            .help(format!(
+                "timeouts are in milliseconds, without a unit: leave `{unit}` out"
+            )),
+
         _ => error.help(list),
     }
 }

@@ -41,11 +41,11 @@ pub enum Multiplexer {
 impl Surroundings {
     /// Of this process, on a terminal of this size.
     pub fn here(size: Size) -> Surroundings {
-        let named = ["VISUAL", "EDITOR"]
+        let mut named = ["VISUAL", "EDITOR"]
             .iter()
             .filter_map(|name| env::var(name).ok());
         Surroundings {
-            editor: named.into_iter().find(|editor| !editor.trim().is_empty()),
+            editor: named.find(|editor| !editor.trim().is_empty()),
             search: env::var_os("PATH").unwrap_or_default(),
             multiplexer: if env::var_os("TMUX").is_some() {
                 Multiplexer::Tmux
@@ -169,6 +169,9 @@ impl Launch {
     }
 }
 
+/// Vim takes `*.lrp` for an archive, as the Linux Router Project made them, unless it believes its plugin for those loaded.
+const NO_ARCHIVE: &str = "let g:loaded_tarPlugin=1";
+
 /// How editors are told a line.
 #[derive(Clone, Copy)]
 enum Dialect {
@@ -222,7 +225,14 @@ pub fn command_line(editor: &str, file: &Path, line: usize, column: usize) -> Ve
     let mut with_place = file.clone();
     with_place.push(format!(":{line}:{column}"));
     command.extend(match Dialect::of(&command[0].to_string_lossy()) {
-        Dialect::Vim => vec![format!("+call cursor({line},{column})").into(), file],
+        Dialect::Vim => {
+            vec![
+                "--cmd".into(),
+                NO_ARCHIVE.into(),
+                format!("+call cursor({line},{column})").into(),
+                file,
+            ]
+        }
         Dialect::Line => vec![format!("+{line}").into(), file],
         Dialect::Comma => vec![format!("+{line},{column}").into(), file],
         Dialect::Colon => vec![format!("+{line}:{column}").into(), file],

@@ -3,19 +3,20 @@
 
 pub mod action;
 pub mod app;
-pub mod format;
-pub mod graph;
-pub mod machine_graph;
 pub mod editor;
 pub mod foreground;
+pub mod format;
+pub mod graph;
 pub mod input;
-pub mod quiet;
-pub mod terminal;
 pub mod key;
 pub mod layout;
+pub mod live;
+pub mod machine_graph;
 pub mod panes;
 pub mod pen;
+pub mod quiet;
 pub mod scope;
+pub mod terminal;
 pub mod theme;
 pub mod tree;
 pub mod view;

@@ -42,14 +42,20 @@ struct Shared {
 }
 
 impl Screen {
-    /// Takes the terminal over. Should this thread panic, the terminal is given back, then `stop_the_robot` is called,
-    /// then the panic is explained. Fails where there is no terminal, in a sentence for the user.
-    pub fn enter(stop_the_robot: impl Fn() + Send + Sync + 'static) -> io::Result<Screen> {
+    /// Whether there is a terminal to enter.
+    pub fn check() -> io::Result<()> {
         if !io::stdin().is_terminal() || !io::stdout().is_terminal() {
             return Err(io::Error::other(
                 "lrp needs a terminal for its screen; `lrp run` works without one",
             ));
         }
+        Ok(())
+    }
+
+    /// Takes the terminal over. Should this thread panic, the terminal is given back, then `stop_the_robot` is called,
+    /// then the panic is explained. Fails where there is no terminal, in a sentence for the user.
+    pub fn enter(stop_the_robot: impl Fn() + Send + Sync + 'static) -> io::Result<Screen> {
+        Self::check()?;
         let out = File::from(io::stdout().as_fd().try_clone_to_owned()?);
         let terminal = Terminal::new(Quiet::new(out.try_clone()?))?;
         let shared = Arc::new(Shared {
@@ -120,8 +126,8 @@ impl Shared {
         if !self.ours.swap(false, Ordering::AcqRel) {
             return;
         }
-        let _ = execute!(out, ResetColor, Show, LeaveAlternateScreen);
         let _ = disable_raw_mode();
+        let _ = execute!(out, ResetColor, Show, LeaveAlternateScreen);
         for panic in self
             .kept
             .lock()

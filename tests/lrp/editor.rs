@@ -8,6 +8,9 @@ use std::path::Path;
 use lrp::ui::editor::{Launch, Manner, Multiplexer, NoEditor, Surroundings, command_line};
 use ratatui::layout::Size;
 
+/// Else vim takes the file for an archive.
+const FOR_VIM: [&str; 2] = ["--cmd", "let g:loaded_tarPlugin=1"];
+
 fn strings(command: Vec<OsString>) -> Vec<String> {
     command
         .into_iter()
@@ -18,12 +21,31 @@ fn strings(command: Vec<OsString>) -> Vec<String> {
 #[test]
 fn each_editor_is_told_the_line_in_its_own_way() {
     let table: &[(&str, &[&str])] = &[
-        ("vim", &["vim", "+call cursor(12,5)", "a.lrp"]),
+        (
+            "vim",
+            &["vim", FOR_VIM[0], FOR_VIM[1], "+call cursor(12,5)", "a.lrp"],
+        ),
         (
             "/usr/bin/vim.basic -n",
-            &["/usr/bin/vim.basic", "-n", "+call cursor(12,5)", "a.lrp"],
+            &[
+                "/usr/bin/vim.basic",
+                "-n",
+                FOR_VIM[0],
+                FOR_VIM[1],
+                "+call cursor(12,5)",
+                "a.lrp",
+            ],
         ),
-        ("nvim", &["nvim", "+call cursor(12,5)", "a.lrp"]),
+        (
+            "nvim",
+            &[
+                "nvim",
+                FOR_VIM[0],
+                FOR_VIM[1],
+                "+call cursor(12,5)",
+                "a.lrp",
+            ],
+        ),
         ("vi", &["vi", "+12", "a.lrp"]),
         ("nano", &["nano", "+12,5", "a.lrp"]),
         ("emacs -nw", &["emacs", "-nw", "+12:5", "a.lrp"]),
@@ -45,6 +67,8 @@ fn each_editor_is_told_the_line_in_its_own_way() {
                 "-c",
                 "set nu",
                 "a b",
+                FOR_VIM[0],
+                FOR_VIM[1],
                 "+call cursor(12,5)",
                 "a.lrp",
             ],

@@ -1,12 +1,17 @@
 //! The drawings of state machines: what they look like, and that a reader finds in them what was put in, nothing else.
 
+mod machines;
+mod random;
+
+use std::cmp::Reverse;
 use std::path::PathBuf;
 
-use proptest::prelude::*;
-
-use lrp::ui::graph::{Edge, EdgeKind, Glyphs, Graph, Node, NodeKind, Options, Rows, draw};
+use lrp::ui::graph::{
+    Edge, EdgeKind, Glyphs, Graph, Nested, Options, Part, Rows, dot, draw, mermaid,
+};
 
 use crate::tracer::{Seen, trace};
+use machines::{fixed_cases, full, graph, line_follower, ring, search};
 
 const UNICODE: Options = Options {
     glyphs: Glyphs::Unicode,
@@ -23,131 +28,6 @@ const ONE_ROW: Options = Options {
     rows: Rows::One,
     ..UNICODE
 };
-
-/// A graph in a line of words: nodes `a b(room) *`, edges `a->b label`; a label's first character may tell the kind.
-fn graph(nodes: &str, edges: &[&str]) -> Graph {
-    let nodes: Vec<Node> = nodes.split_whitespace().map(node).collect();
-    let index = |name: &str| {
-        nodes
-            .iter()
-            .position(|node| node.name == name)
-            .unwrap_or_else(|| panic!("no node {name}"))
-    };
-    let edges = edges.iter().enumerate().map(|(id, text)| {
-        let (ends, label) = text.split_once(' ').unwrap_or((text, ""));
-        let (from, to) = ends.split_once("->").expect("an arrow");
-        Edge {
-            from: index(from),
-            to: index(to),
-            label: label.to_owned(),
-            kind: kind(from, label),
-            id: id as u32,
-        }
-    });
-    let edges = edges.collect();
-    Graph { nodes, edges }
-}
-
-fn node(word: &str) -> Node {
-    let (name, inside) = match word.split_once('(') {
-        Some((name, room)) => (name, Some(room.trim_end_matches(')').to_owned())),
-        None => (word, None),
-    };
-    let kind = if name == "*" {
-        NodeKind::Any
-    } else {
-        NodeKind::State
-    };
-    Node {
-        name: name.to_owned(),
-        kind,
-        inside,
-    }
-}
-
-fn kind(from: &str, label: &str) -> EdgeKind {
-    match label {
-        _ if from == "*" => EdgeKind::Wildcard,
-        "eps" => EdgeKind::Eps,
-        _ if label.starts_with("exit") => EdgeKind::Exit,
-        _ if label.ends_with("ms") && label.starts_with(|c: char| c.is_ascii_digit()) => {
-            EdgeKind::Ontime
-        }
-        _ => EdgeKind::On,
-    }
-}
-
-fn tick_tock() -> Graph {
-    graph("tick tock", &["tick->tock 500ms", "tock->tick 500ms"])
-}
-
-fn line_follower() -> Graph {
-    graph(
-        "moving looking(returnright) bumpback bumpturn end *",
-        &[
-            "moving->looking outofline",
-            "looking->moving intheline",
-            "bumpback->bumpturn 1000ms",
-            "bumpturn->looking 3000ms",
-            "*->bumpback bumping",
-            "*->end ending",
-        ],
-    )
-}
-
-fn search() -> Graph {
-    graph(
-        "lookleft returnleft lookright returnright",
-        &[
-            "lookleft->returnleft treturnleft",
-            "returnleft->lookright tlookright",
-            "lookright->returnright treturnright",
-            "returnright->lookleft tlookleft",
-        ],
-    )
-}
-
-/// Five states, each with an edge to every other.
-fn full() -> Graph {
-    let names = ["alpha", "beta", "gamma", "delta", "omega"];
-    let mut edges = Vec::new();
-    for from in names {
-        for to in names.iter().filter(|to| **to != from) {
-            edges.push(format!("{from}->{to} {}2{}", &from[..1], &to[..1]));
-        }
-    }
-    graph(
-        &names.join(" "),
-        &edges.iter().map(String::as_str).collect::<Vec<_>>(),
-    )
-}
-
-/// A ring of twelve with six chords.
-fn ring() -> Graph {
-    let ring = (0..12).map(|i| format!("s{i}->s{} next{i}", (i + 1) % 12));
-    let chords = (0..6).map(|i| format!("s{i}->s{} chord{i}", i + 6));
-    let edges: Vec<String> = ring.chain(chords).collect();
-    let names: Vec<String> = (0..12).map(|i| format!("s{i}")).collect();
-    graph(
-        &names.join(" "),
-        &edges.iter().map(String::as_str).collect::<Vec<_>>(),
-    )
-}
-
-fn loops() -> Graph {
-    graph(
-        "idle work(step) done",
-        &[
-            "idle->idle again",
-            "idle->work start",
-            "work->work retry",
-            "work->work 250ms",
-            "work->idle eps",
-            "work->done exit done",
-            "done->idle eps",
-        ],
-    )
-}
 
 /// Compares a drawing with its file; `UPDATE=1` writes the file instead.
 fn same_as_file(name: &str, text: &str) {
@@ -190,17 +70,6 @@ fn meant(graph: &Graph) -> Seen {
             .collect(),
         edges,
     }
-}
-
-fn fixed_cases() -> [(&'static str, Graph); 6] {
-    [
-        ("tick_tock", tick_tock()),
-        ("line_follower", line_follower()),
-        ("search", search()),
-        ("full", full()),
-        ("ring", ring()),
-        ("loops", loops()),
-    ]
 }
 
 #[test]
@@ -250,100 +119,178 @@ fn wrong(glyph: char) -> Vec<char> {
         .collect()
 }
 
-/// A graph of up to `most` states, the last of them perhaps `*`, with up to four times as many edges of all kinds.
-fn any_graph(most: usize) -> impl Strategy<Value = Graph> {
-    (2..=most, any::<bool>()).prop_flat_map(|(count, wildcard)| {
-        let nodes =
-            prop::collection::vec((any_name(), prop::option::weighted(0.2, any_name())), count);
-        let edge = (0..count, 0..count, any_label(), 0..4usize);
-        (nodes, prop::collection::vec(edge, 0..=4 * count))
-            .prop_map(move |(nodes, edges)| built(nodes, edges, wildcard))
-    })
+#[test]
+fn drawings_stay_within_the_sizes_to_beat() {
+    let fits = |graph: &Graph, width: u16, height: u16| {
+        let drawing = draw(graph, &UNICODE);
+        let size = (drawing.width, drawing.height);
+        assert!(
+            size.0 <= width && size.1 <= height,
+            "{size:?} is not within {width}x{height}"
+        );
+    };
+    fits(&line_follower(), 34, 23);
+    fits(&full(), 80, 24);
+    fits(&ring(), 80, 24);
 }
 
-fn built(
-    nodes: Vec<(String, Option<String>)>,
-    edges: Vec<(usize, usize, String, usize)>,
-    wildcard: bool,
-) -> Graph {
-    let last = nodes.len() - 1;
-    let is_any = |i: usize| wildcard && i == last;
-    let node = |(i, (name, inside))| match is_any(i) {
-        true => Node {
-            name: "*".to_owned(),
-            kind: NodeKind::Any,
-            inside: None,
+/// What is read from a drawing within `width` columns, if that leaves all names whole. Its labels may be shortened.
+fn narrowed(graph: &Graph, width: u16, options: &Options) -> Option<Result<Seen, String>> {
+    let drawing = draw(
+        graph,
+        &Options {
+            max_width: Some(width),
+            ..*options
         },
-        false => Node {
-            name: format!("{name}{i}"),
-            kind: NodeKind::State,
-            inside,
-        },
+    );
+    let text = drawing.text();
+    let whole = graph
+        .nodes
+        .iter()
+        .all(|node| text.contains(&format!(" {} ", node.name)));
+    (whole && drawing.width <= width)
+        .then(|| trace(&text).map_err(|error| format!("{error}\n{text}")))
+}
+
+/// Whether `seen` has the edges of `meant`, some with the first part of their label and an ellipsis.
+fn shortens(seen: &Seen, meant: &Seen) -> bool {
+    let part = |label: &str| label.strip_suffix(['…', '~']).map(str::to_owned);
+    let fits = |label: &str, full: &str| {
+        let shortened = |part: String| part.len() < full.len() && full.starts_with(&part);
+        label == full || part(label).is_some_and(shortened)
     };
-    let edge = |(id, (from, to, label, kind)): (usize, (usize, usize, String, usize))| {
-        let kind = [
-            EdgeKind::On,
-            EdgeKind::Eps,
-            EdgeKind::Ontime,
-            EdgeKind::Exit,
-        ][kind];
-        let kind = if is_any(from) {
-            EdgeKind::Wildcard
-        } else {
-            kind
-        };
-        Edge {
-            from,
-            to,
-            label,
-            kind,
-            id: id as u32,
+    // Whole labels choose first, then the longest, so that none takes what only another fits.
+    let mut edges = seen.edges.clone();
+    edges.sort_by_key(|(_, _, label)| (part(label).is_some(), Reverse(label.len())));
+    let mut left = meant.edges.clone();
+    let mut takes = |(from, to, label): &(String, String, String)| {
+        let same =
+            |(f, t, full): &(String, String, String)| f == from && t == to && fits(label, full);
+        let found = left.iter().position(same);
+        found.map(|i| left.swap_remove(i)).is_some()
+    };
+    seen.states == meant.states && edges.len() == meant.edges.len() && edges.iter().all(&mut takes)
+}
+
+#[test]
+fn a_narrow_drawing_shortens_labels_and_keeps_every_edge() {
+    for (name, graph) in fixed_cases() {
+        for options in [UNICODE, ASCII] {
+            let full = draw(&graph, &options).width;
+            let narrower: Vec<Seen> = (0..full)
+                .rev()
+                .map_while(|width| narrowed(&graph, width, &options))
+                .map(|seen| seen.expect(name))
+                .collect();
+            assert!(!narrower.is_empty(), "{name} can't be narrowed");
+            for seen in narrower {
+                assert!(shortens(&seen, &meant(&graph)), "{name} became {seen:#?}");
+            }
         }
+    }
+}
+
+/// The cells say what they belong to, so that a screen can colour them.
+#[test]
+fn cells_know_their_part() {
+    for (name, graph) in fixed_cases() {
+        let drawing = draw(&graph, &UNICODE);
+        let with = |part: Part| {
+            drawing
+                .cells()
+                .iter()
+                .filter(|cell| cell.part == part)
+                .map(|cell| cell.glyph)
+                .collect::<String>()
+        };
+        for (i, node) in graph.nodes.iter().enumerate() {
+            assert_eq!(with(Part::Name(i)), node.name, "{name}");
+            let rect = drawing.node_rect(i).expect("a box");
+            assert_eq!(drawing.cell(rect.x, rect.y).part, Part::Box(i), "{name}");
+            assert_eq!(
+                drawing
+                    .cell(rect.x + rect.width - 1, rect.y + rect.height - 1)
+                    .part,
+                Part::Box(i),
+                "{name}"
+            );
+            let room = node.inside.as_ref().map(|inside| inside.len() as u16);
+            assert!(
+                drawing.inside_rect(i).map(|room| room.width) >= room,
+                "{name}: no room inside {}",
+                node.name
+            );
+        }
+        for (i, edge) in graph.edges.iter().enumerate() {
+            assert_eq!(with(Part::Label(i)), edge.label, "{name}");
+            assert_eq!(with(Part::Head(i)).chars().count(), 1, "{name}");
+        }
+        assert_eq!(with(Part::Blank).trim(), "", "{name}");
+    }
+}
+
+#[test]
+fn a_taken_edge_stands_out_in_heavy_lines_without_moving() {
+    let graph = line_follower();
+    let drawing = draw(&graph, &UNICODE);
+    let bumping = 4;
+    let heavy: String = drawing
+        .heavy_line(bumping)
+        .map(|(_, glyph)| glyph)
+        .collect();
+    let light: String = drawing
+        .edge_cells(bumping)
+        .filter(|at| {
+            matches!(
+                drawing.cell(at.x, at.y).part,
+                Part::Line(_) | Part::Crossing { .. }
+            )
+        })
+        .map(|at| drawing.cell(at.x, at.y).glyph)
+        .collect();
+    assert_eq!(light, "┌┼───────│││││└──");
+    assert_eq!(heavy, "┏┿━━━━━━━┃┃┃┃┃┗━━");
+}
+
+#[test]
+fn small_drawings() {
+    let text = |graph: Graph| draw(&graph, &UNICODE).text();
+    assert_eq!(text(Graph::default()), "");
+    assert_eq!(text(graph("a", &[])), "▌ a ▐\n");
+    assert_eq!(text(graph("a", &["a->a x"])), "▌ a ▐─x─┐\n▌   ▐◄──┘\n");
+    let edge = |from, to| Edge {
+        from,
+        to,
+        label: "nowhere".to_owned(),
+        kind: EdgeKind::On,
+        id: 0,
     };
-    let edges = edges
-        .into_iter()
-        .enumerate()
-        .map(edge)
-        .filter(|edge| !is_any(edge.to));
-    Graph {
-        edges: edges.collect(),
-        nodes: nodes.into_iter().enumerate().map(node).collect(),
+    assert_eq!(
+        text(Graph {
+            edges: vec![edge(0, 1), edge(7, 0)],
+            ..graph("a", &[])
+        }),
+        "▌ a ▐\n"
+    );
+}
+
+fn nested() -> Nested {
+    Nested {
+        name: "follower".to_owned(),
+        graph: line_follower(),
+        children: vec![(
+            1,
+            Nested {
+                name: "look \"around\"".to_owned(),
+                graph: search(),
+                children: Vec::new(),
+            },
+        )],
     }
 }
 
-/// Letters of all widths, an accent that combines with the letter before it, and signs that lines are made of.
-fn any_name() -> impl Strategy<Value = String> {
-    "[a-z_]([a-zA-Zäé界線😀_-]|e\u{301}){0,9}"
-}
-
-fn any_label() -> impl Strategy<Value = String> {
-    "|[a-zäß線🤖]{1,3}|[a-z-]{1,14}|[0-9]{1,5}ms|[ov.'|+=~:<>^-]{1,4}|[a-z]{1,5}\\.x [<>=+|-] [0-9]{1,4}"
-}
-
-fn read_back(graph: &Graph) -> Result<(), TestCaseError> {
-    for options in [UNICODE, ASCII, ONE_ROW] {
-        let drawing = draw(graph, &options);
-        let text = drawing.text();
-        prop_assert_eq!(trace(&text), Ok(meant(graph)), "{:?}\n{}", options, text);
-        prop_assert_eq!(&draw(graph, &options), &drawing);
-    }
-    Ok(())
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig { cases: 200, ..ProptestConfig::default() })]
-
-    #[test]
-    fn machines_are_read_as_they_are(graph in any_graph(40)) {
-        read_back(&graph)?;
-    }
-}
-
-proptest! {
-    #![proptest_config(ProptestConfig { cases: 10, ..ProptestConfig::default() })]
-
-    #[test]
-    fn large_machines_are_read_as_they_are(graph in any_graph(100)) {
-        read_back(&graph)?;
-    }
+#[test]
+fn exports_look_like_their_files() {
+    same_as_file("line_follower.dot", &dot(&nested()));
+    same_as_file("line_follower.mermaid", &mermaid(&nested()));
 }

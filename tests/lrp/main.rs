@@ -1,17 +1,20 @@
 //! All integration tests of the package, in one binary.
 
+mod docs;
+mod editor;
 mod frames;
 mod graph;
-mod program;
-mod story;
-mod tracer;
-mod lua;
-mod editor;
+mod keys;
 mod loader;
+mod lua;
 mod quiet;
 mod settling;
 mod signals;
+mod story;
+mod syntax;
 mod terminal;
+mod tracer;
+mod view;
 mod watch;
 mod checks;
 mod edits;

@@ -4,7 +4,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use lrp::session::loader::Unreadable;
-use lrp::session::watch::settling::{COARSE, News, PATIENCE, SETTLE, Settling, Stir};
+use lrp::session::watch::settling::{BUSY, COARSE, News, PATIENCE, SETTLE, Settling, Stir};
 use lrp::session::watch::stamp::Stamp;
 
 fn ms(ms: u64) -> Duration {
@@ -80,6 +80,28 @@ fn a_file_that_grows_is_read_after_its_writer_closed_it() {
     }
     file.stir(Stir::Whole, ms(1000));
     assert_eq!(file.due(), Some(ms(1000) + SETTLE));
+}
+
+#[test]
+fn saves_that_never_pause_are_read_all_the_same() {
+    let mut file = file();
+    for n in 10..16 {
+        file.stir(Stir::Whole, ms(10 * n));
+        assert_eq!(file.due(), Some(ms(10 * n) + SETTLE));
+    }
+    file.stir(Stir::Written, ms(100) + BUSY);
+    assert_eq!(
+        file.due(),
+        Some(ms(100) + BUSY + PATIENCE),
+        "this one isn't whole"
+    );
+    file.stir(Stir::Whole, ms(102) + BUSY);
+    assert!(file.is_due(ms(102) + BUSY));
+    file.look(stamp(1), ms(102) + BUSY);
+    assert!(
+        !file.is_due(ms(102) + BUSY),
+        "the next one came while it was read"
+    );
 }
 
 #[test]

@@ -1,10 +1,12 @@
 //! Reads a printed drawing of a state machine as a person would: finds the boxes and walks each line back from its
 //! arrow head. Knows nothing of how the drawing was made; it sees the text alone, and refuses what could be read in two ways.
 
+mod page;
+
 use std::collections::BTreeMap;
 
-use unicode_segmentation::UnicodeSegmentation;
-use unicode_width::UnicodeWidthStr;
+pub use page::columns;
+use page::{At, Column, Page};
 
 /// What a drawing says.
 #[derive(Debug, PartialEq, Eq)]
@@ -40,152 +42,6 @@ pub fn trace(text: &str) -> Result<Seen, String> {
         .map(|b| (b.name.clone(), b.nested))
         .collect();
     Ok(Seen { states, edges })
-}
-
-/// The text as cells: a wide cluster is followed by empty ones.
-struct Page {
-    cells: Vec<Vec<String>>,
-    script: Script,
-}
-
-/// The characters that the drawing uses.
-struct Script {
-    borders: [&'static str; 2],
-    nested: &'static str,
-    /// To the left, right, up and down.
-    heads: [&'static str; 4],
-    /// Solid, dotted and dashed.
-    across: [&'static str; 3],
-    down: [&'static str; 3],
-    crossing: &'static str,
-    exit: &'static str,
-    /// Whether a blank stands on both sides of a label in a line.
-    padded: bool,
-}
-
-const UNICODE: Script = Script {
-    borders: ["▌", "▐"],
-    nested: " ▸",
-    heads: ["◄◁", "►▷", "▲△", "▼▽"],
-    across: ["─", "┄", "╌"],
-    down: ["│", "┆", "╎"],
-    crossing: "┼",
-    exit: "○",
-    padded: false,
-};
-
-const ASCII: Script = Script {
-    borders: ["[", "]"],
-    nested: " >",
-    heads: ["<", ">", "^", "v"],
-    across: ["-", "~", "="],
-    down: ["|", ":", "|"],
-    crossing: "+",
-    exit: "o",
-    padded: true,
-};
-
-type At = (usize, usize);
-
-impl Page {
-    fn new(text: &str) -> Page {
-        let script = if text.contains('▌') { UNICODE } else { ASCII };
-        let cells = text.lines().map(|line| {
-            let clusters = line.graphemes(true);
-            clusters
-                .flat_map(|c| {
-                    [c].into_iter()
-                        .chain(std::iter::repeat_n("", c.width().max(1) - 1))
-                        .map(str::to_owned)
-                })
-                .collect()
-        });
-        Page {
-            cells: cells.collect(),
-            script,
-        }
-    }
-
-    fn at(&self, (x, y): At) -> &str {
-        self.cells
-            .get(y)
-            .and_then(|row| row.get(x))
-            .map_or(" ", String::as_str)
-    }
-
-    fn text(&self, y: usize, columns: std::ops::Range<usize>) -> String {
-        columns.map(|x| self.at((x, y))).collect()
-    }
-}
-
-struct Box {
-    top: usize,
-    bottom: usize,
-    name: String,
-    nested: bool,
-}
-
-/// The column of boxes: the columns of its borders, and the boxes from top to bottom.
-struct Column {
-    left: usize,
-    right: usize,
-    boxes: Vec<Box>,
-}
-
-impl Column {
-    fn find(page: &Page) -> Result<Option<Column>, String> {
-        let mut borders: Option<(usize, usize)> = None;
-        let mut boxes: Vec<Box> = Vec::new();
-        for (y, row) in page.cells.iter().enumerate() {
-            let [left, right] = page.script.borders.map(|border| {
-                row.iter()
-                    .enumerate()
-                    .filter(|(_, cell)| *cell == border)
-                    .map(|(x, _)| x)
-                    .collect::<Vec<_>>()
-            });
-            let (left, right) = match (left[..].first(), right[..].first()) {
-                (None, None) => continue,
-                (Some(&l), Some(&r)) if l < r && left.len() == 1 && right.len() == 1 => (l, r),
-                _ => return Err(format!("row {y}: a box without both its borders")),
-            };
-            if *borders.get_or_insert((left, right)) != (left, right) {
-                return Err(format!("row {y}: a border outside of the column"));
-            }
-            if page.at((left + 1, y)) != " " || page.at((right - 1, y)) != " " {
-                return Err(format!("row {y}: something touches the border from inside"));
-            }
-            match boxes.last_mut() {
-                Some(last) if last.bottom + 1 == y => last.bottom = y,
-                _ => boxes.push(Box {
-                    top: y,
-                    bottom: y,
-                    name: String::new(),
-                    nested: false,
-                }),
-            }
-            let text = page.text(y, left + 1..right);
-            let last = boxes.last_mut().expect("one was pushed");
-            match (text.trim_matches(' '), last.name.is_empty()) {
-                ("", _) => {}
-                (_, false) => return Err(format!("row {y}: a second name in a box")),
-                (name, true) => {
-                    let bare = name.strip_suffix(page.script.nested);
-                    (last.name, last.nested) = (bare.unwrap_or(name).to_owned(), bare.is_some());
-                }
-            }
-        }
-        for (i, b) in boxes.iter().enumerate() {
-            if b.name.is_empty() || boxes[..i].iter().any(|other| other.name == b.name) {
-                return Err(format!("row {}: a box with no name, or another's", b.top));
-            }
-        }
-        Ok(borders.map(|(left, right)| Column { left, right, boxes }))
-    }
-
-    fn at(&self, y: usize) -> Option<&Box> {
-        self.boxes.iter().find(|b| b.top <= y && y <= b.bottom)
-    }
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -249,7 +105,7 @@ impl Tracer<'_> {
             }
         }
         // Arrows in a gap stand on both sides of the boxes' middle. The lines are known by now, so no label runs into one.
-        let middle = left + (right - left + 1) / 2;
+        let middle = self.column.middle();
         for y in rows.filter(|&y| self.column.at(y).is_none()) {
             if self.is_head(2, (middle - 1, y)) {
                 edges.push(self.arrow_up((middle - 1, y))?);
@@ -263,7 +119,7 @@ impl Tracer<'_> {
 
     fn is_head(&self, way: usize, at: At) -> bool {
         let glyph = self.page.at(at);
-        glyph != "" && self.page.script.heads[way].contains(glyph)
+        !glyph.is_empty() && self.page.script.heads[way].contains(glyph)
     }
 
     fn arrow_up(&mut self, (x, y): At) -> Result<(String, String, String), String> {
@@ -325,9 +181,7 @@ impl Tracer<'_> {
             clusters.reverse();
         }
         let label = clusters.concat().trim_matches(' ').to_owned();
-        let columns =
-            UnicodeWidthStr::width(&*label).max(label.graphemes(true).map(|c| c.width()).sum());
-        for step in 0..columns {
+        for step in 0..columns(&label) {
             let x = if way == Way::Left {
                 arrow.0 - 2 - step
             } else {

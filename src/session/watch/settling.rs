@@ -10,6 +10,9 @@ use crate::session::loader::Unreadable;
 /// How long a file must be still before it is read.
 pub const SETTLE: Duration = Duration::from_millis(20);
 
+/// How long saves may follow on each other before the next whole one is read without waiting for stillness.
+pub const BUSY: Duration = Duration::from_millis(60);
+
 /// How long a save may stay unfinished: the file gone, empty, or open in its writer's hands without another byte.
 pub const PATIENCE: Duration = Duration::from_secs(1);
 
@@ -50,6 +53,8 @@ pub struct Settling {
     stirred: Duration,
     last: Stir,
     unread: bool,
+    /// When a whole save first waited to be read.
+    waiting: Option<Duration>,
     /// Since when it was found missing or empty.
     vanished: Option<Duration>,
     text: Option<Arc<str>>,
@@ -66,6 +71,7 @@ impl Settling {
             stirred: now,
             last,
             unread: true,
+            waiting: None,
             vanished: None,
             text,
             trouble,
@@ -75,7 +81,10 @@ impl Settling {
     pub fn stir(&mut self, how: Stir, now: Duration) {
         self.stirred = now;
         self.unread = true;
-        if how != Stir::Touched {
+        if how == Stir::Whole {
+            self.waiting.get_or_insert(now);
+        }
+        if how != Stir::Touched || self.last == Stir::Whole {
             self.last = how;
         }
     }
@@ -96,10 +105,13 @@ impl Settling {
 
     /// When to read the file; None while there is no reason to.
     pub fn due(&self) -> Option<Duration> {
-        let rest = if self.last == Stir::Written {
-            PATIENCE
-        } else {
-            SETTLE
+        let busy = self
+            .waiting
+            .is_some_and(|since| self.stirred >= since + BUSY);
+        let rest = match self.last {
+            Stir::Written => PATIENCE,
+            Stir::Whole if busy => Duration::ZERO,
+            Stir::Whole | Stir::Touched => SETTLE,
         };
         let settled = self.unread.then_some(self.stirred + rest);
         settled.or(self.vanished.map(|since| since + PATIENCE))
@@ -112,6 +124,7 @@ impl Settling {
     /// What reading it gave. To be called when it is due, also after the reading.
     pub fn found(&mut self, found: Result<Arc<str>, Unreadable>, now: Duration) -> Option<News> {
         self.unread = false;
+        self.waiting = None;
         self.last = Stir::Touched;
         match found {
             Ok(text) => self.readable(text),

@@ -4,6 +4,7 @@
 use std::borrow::Cow;
 use std::collections::BTreeMap;
 
+use super::glyphs;
 use super::layout::{Point, Rect};
 
 /// What a cell belongs to. Numbers are indices into the nodes and edges of the graph.
@@ -96,6 +97,22 @@ impl Drawing {
                 _ => false,
             });
         cells.map(move |(i, _)| super::layout::point(i % width, i / width))
+    }
+
+    /// The line of an edge in heavy glyphs: where, and what to print there. Where there is no heavy glyph, as in ASCII,
+    /// it is the one of the drawing.
+    pub fn heavy_line(&self, edge: usize) -> impl Iterator<Item = (Point, char)> + '_ {
+        self.edge_cells(edge).filter_map(move |at| {
+            let Cell { glyph, part } = self.cell(at.x, at.y);
+            match part {
+                Part::Line(_) => Some((at, glyphs::heavy(glyph))),
+                Part::Crossing { across, .. } if across == edge => {
+                    Some((at, glyphs::heavy_across(glyph)))
+                }
+                Part::Crossing { .. } => Some((at, glyphs::heavy_down(glyph))),
+                _ => None,
+            }
+        })
     }
 
     /// The drawing as lines of text without trailing blanks, each ended by a line feed.

@@ -16,7 +16,6 @@ pub fn dot(machine: &Nested) -> String {
     let mut out = Lines::default();
     out.line(format!("digraph {} {{", quoted(&machine.name)));
     out.indented(|out| {
-        out.line("compound=true".into());
         out.line("node [shape=box, style=rounded]".into());
         dot_machine(machine, "n", out);
     });

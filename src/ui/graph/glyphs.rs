@@ -143,3 +143,32 @@ impl Glyphs {
         }
     }
 }
+
+/// A glyph of a line in its heavy form; itself if it has none.
+pub fn heavy(glyph: char) -> char {
+    const PAIRS: [(char, char); 11] = [
+        ('─', '━'),
+        ('│', '┃'),
+        ('┄', '┅'),
+        ('┆', '┇'),
+        ('╌', '╍'),
+        ('╎', '╏'),
+        ('┌', '┏'),
+        ('┐', '┓'),
+        ('└', '┗'),
+        ('┘', '┛'),
+        ('○', '●'),
+    ];
+    let pair = PAIRS.iter().find(|(light, _)| *light == glyph);
+    pair.map_or(glyph, |(_, heavy)| *heavy)
+}
+
+/// A crossing whose line across is heavy.
+pub fn heavy_across(glyph: char) -> char {
+    if glyph == '┼' { '┿' } else { glyph }
+}
+
+/// A crossing whose line up and down is heavy.
+pub fn heavy_down(glyph: char) -> char {
+    if glyph == '┼' { '╂' } else { glyph }
+}

@@ -4,7 +4,7 @@ use crate::ui::graph::{Glyphs, Graph, Node, Options, Rows, words};
 
 /// What a box shows of a nested machine.
 #[derive(Clone, Copy, Debug)]
-enum Nested {
+enum Inside {
     No,
     Marked,
     /// Marked, with a row that has room for a name of so many columns.
@@ -18,10 +18,10 @@ pub struct Texts {
     pub glyphs: Glyphs,
     names: Vec<String>,
     labels: Vec<String>,
-    nested: Vec<Nested>,
+    insides: Vec<Inside>,
 }
 
-/// Upper bounds for the width of texts, in columns.
+/// Upper bounds for the width of texts, in columns. That of names also holds for names inside.
 #[derive(Clone, Copy, Debug)]
 pub struct Limits {
     pub name: usize,
@@ -32,25 +32,29 @@ impl Texts {
     pub fn of(graph: &Graph, options: &Options) -> Texts {
         let glyphs = options.glyphs;
         let clean = |text: &String| words::clean(text, glyphs);
-        let nested = |node: &Node| match (&node.inside, options.rows) {
-            (None, _) => Nested::No,
-            (Some(_), Rows::One) => Nested::Marked,
-            (Some(name), Rows::Two) => Nested::Room(words::width(&clean(name))),
+        let inside = |node: &Node| match (&node.inside, options.rows) {
+            (None, _) => Inside::No,
+            (Some(_), Rows::One) => Inside::Marked,
+            (Some(name), Rows::Two) => Inside::Room(words::width(&clean(name))),
         };
         Texts {
             glyphs,
             names: graph.nodes.iter().map(|node| clean(&node.name)).collect(),
             labels: graph.edges.iter().map(|edge| clean(&edge.label)).collect(),
-            nested: graph.nodes.iter().map(nested).collect(),
+            insides: graph.nodes.iter().map(inside).collect(),
         }
     }
 
     /// The limits that shorten nothing; each is at least 1.
     pub fn full(&self) -> Limits {
-        let longest = |texts: &[String]| texts.iter().map(|text| words::width(text)).max();
+        let widths = |texts: &[String]| texts.iter().map(|text| words::width(text)).max();
+        let room = self.insides.iter().map(|inside| match inside {
+            Inside::Room(room) => *room,
+            Inside::No | Inside::Marked => 0,
+        });
         Limits {
-            name: longest(&self.names).unwrap_or(0).max(1),
-            label: longest(&self.labels).unwrap_or(0).max(1),
+            name: widths(&self.names).max(room.max()).unwrap_or(0).max(1),
+            label: widths(&self.labels).unwrap_or(0).max(1),
         }
     }
 
@@ -59,8 +63,8 @@ impl Texts {
         let nodes = 0..self.names.len();
         let width = |node: usize| {
             let name = words::width(&self.names[node]).min(limits.name) + self.mark(node);
-            match self.nested[node] {
-                Nested::Room(room) => name.max(room.min(limits.name)),
+            match self.insides[node] {
+                Inside::Room(room) => name.max(room.min(limits.name)),
                 _ => name,
             }
         };
@@ -83,14 +87,14 @@ impl Texts {
 
     /// The columns that the mark of a nested machine takes beside the name.
     pub fn mark(&self, node: usize) -> usize {
-        match self.nested[node] {
-            Nested::No => 0,
-            Nested::Marked | Nested::Room(_) => MARK,
+        match self.insides[node] {
+            Inside::No => 0,
+            Inside::Marked | Inside::Room(_) => MARK,
         }
     }
 
     pub fn has_room(&self, node: usize) -> bool {
-        matches!(self.nested[node], Nested::Room(_))
+        matches!(self.insides[node], Inside::Room(_))
     }
 
     /// The rows of text in a box.

@@ -1,0 +1,247 @@
+//! `lrp FILE`: the screen on a running program. One loop takes what comes from keys, the engine and the system, lets the
+//! app answer, and draws when something changed.
+
+use std::io;
+use std::path::{Path, PathBuf};
+use std::process::ExitCode;
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::time::{Duration, Instant};
+
+use crossterm::event::Event as TerminalEvent;
+use ratatui::layout::Size;
+
+use super::app::{App, Effect, Event, Options};
+use super::editor::{Launch, Manner, Surroundings};
+use super::input::{Hold, Input, Received};
+use super::terminal::Screen;
+use super::theme::Theme;
+use crate::runtime::{Command, Record};
+use crate::session::engine_thread::{End, News};
+use crate::session::headless::STUCK;
+use crate::session::live::{Session, Setup};
+use crate::session::signals::{Signal, Signals};
+use crate::session::trace::Trace;
+
+/// Frames are at least this far apart while the engine talks; a key is answered at once.
+const FRAME: Duration = Duration::from_millis(40);
+
+enum Happened {
+    Terminal(Received),
+    News(News),
+    Signal(Signal),
+    EditorEnded(Result<(), String>),
+}
+
+/// Exit code 0: quit, terminated or hung up; 1: it couldn't begin or failed; 130: interrupted.
+pub fn run(setup: Setup, trace: Option<PathBuf>) -> ExitCode {
+    match live(setup, trace) {
+        Ok(code) => code,
+        Err(why) => {
+            eprintln!("lrp: {why}");
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn live(setup: Setup, trace: Option<PathBuf>) -> Result<ExitCode, String> {
+    Screen::check().map_err(|error| error.to_string())?;
+    let trace = trace.as_deref().map(|path| Trace::create(path, setup.conditions())).transpose();
+    let trace = trace.map_err(|error| format!("the trace can't be written: {error}"))?;
+    let app = |size| {
+        let file = setup.file.display().to_string().into();
+        App::new(Options { file, rate: setup.pacing.rate.hz(), theme: Theme::from_no_color(std::env::var("NO_COLOR").ok().as_deref()), size })
+    };
+    let (happened, inbox) = channel();
+    let signals = send(&happened, Happened::Signal);
+    let _signals = Signals::watch(signals).map_err(|error| error.to_string())?;
+    let size = crossterm::terminal::size().map(|(width, height)| Size { width, height }).unwrap_or_default();
+    let app = app(size);
+    let session = Session::start(setup, send(&happened, Happened::News)).map_err(|why| why.to_string())?;
+    let stop = session.commands().clone();
+    let screen = Screen::enter(move || stop.halt()).map_err(|error| error.to_string())?;
+    let input = Input::read(send(&happened, Happened::Terminal)).map_err(|error| error.to_string())?;
+    let mut live = Live { app, screen, session, input, trace, happened, held: None, warned: false, failed: None };
+    let code = live.run(&inbox);
+    let Live { screen, session, failed, .. } = live;
+    drop(session);
+    drop(screen);
+    match failed {
+        Some(why) => Err(why),
+        None => Ok(code),
+    }
+}
+
+/// Hands things of one kind on to the loop; when that has ended there is nobody to tell.
+fn send<T: 'static>(happened: &Sender<Happened>, kind: impl Fn(T) -> Happened + Clone + Send + 'static) -> impl Fn(T) + Clone + Send + 'static {
+    let happened = happened.clone();
+    move |thing| drop(happened.send(kind(thing)))
+}
+
+struct Live {
+    app: App,
+    screen: Screen,
+    session: Session,
+    input: Input,
+    trace: Option<Trace>,
+    happened: Sender<Happened>,
+    /// While an editor has the terminal.
+    held: Option<Hold>,
+    /// Said that an editor will cover the runstop.
+    warned: bool,
+    /// What went wrong in lrp itself.
+    failed: Option<String>,
+}
+
+/// What becomes of the loop.
+enum Next {
+    Go,
+    Answer,
+    End(ExitCode),
+}
+
+impl Live {
+    fn run(&mut self, inbox: &Receiver<Happened>) -> ExitCode {
+        let mut drawn: Option<Instant> = None;
+        let mut at_once = true;
+        loop {
+            if self.app.dirty() && (at_once || drawn.is_none_or(|drawn| drawn.elapsed() >= FRAME)) {
+                if let Err(gone) = self.draw() {
+                    return self.terminal_gone(&gone);
+                }
+                drawn = Some(Instant::now());
+                at_once = false;
+            }
+            let wait = if self.app.dirty() { drawn.map_or(Duration::ZERO, |drawn| FRAME.saturating_sub(drawn.elapsed())) } else { Duration::MAX };
+            let mut next = match inbox.recv_timeout(wait) {
+                Ok(happened) => Some(happened),
+                Err(RecvTimeoutError::Timeout) => None,
+                Err(RecvTimeoutError::Disconnected) => return ExitCode::FAILURE,
+            };
+            while let Some(happened) = next {
+                match self.take(happened) {
+                    Next::Go => {}
+                    Next::Answer => at_once = true,
+                    Next::End(code) => return code,
+                }
+                next = inbox.try_recv().ok();
+            }
+        }
+    }
+
+    fn draw(&mut self) -> io::Result<()> {
+        let app = &self.app;
+        self.screen.draw(|frame| app.draw(frame))?;
+        self.app.drawn();
+        Ok(())
+    }
+
+    /// Nobody is there to see or to say anything: the robot is stopped by the end of the session.
+    fn terminal_gone(&mut self, _: &io::Error) -> ExitCode {
+        ExitCode::SUCCESS
+    }
+
+    fn take(&mut self, happened: Happened) -> Next {
+        match happened {
+            Happened::Terminal(Received::Event(event)) => self.terminal(event),
+            Happened::Terminal(Received::Gone) | Happened::Signal(Signal::HangUp | Signal::Terminate) => Next::End(ExitCode::SUCCESS),
+            Happened::Signal(Signal::Interrupt) => Next::End(ExitCode::from(130)),
+            Happened::Signal(Signal::Suspend) => self.effect(Effect::Suspend),
+            Happened::Signal(Signal::Continue) => Next::Go,
+            Happened::News(News::Records(records)) => {
+                records.iter().for_each(|record| self.record(record));
+                Next::Go
+            }
+            Happened::News(News::Stuck) => {
+                self.app.stopped();
+                self.app.notice(STUCK);
+                Next::Answer
+            }
+            Happened::News(News::Ended(End::Failed(why))) => {
+                self.failed = Some(format!("something in lrp itself went wrong, and it stopped the robot: {why}"));
+                Next::End(ExitCode::FAILURE)
+            }
+            Happened::News(News::Ended(End::TimeIsUp | End::Asked)) => Next::End(ExitCode::SUCCESS),
+            Happened::EditorEnded(result) => self.editor_ended(result),
+        }
+    }
+
+    fn record(&mut self, record: &Record) {
+        self.app.record(record);
+        if let Some(trace) = &mut self.trace {
+            trace.record(record);
+        }
+    }
+
+    fn terminal(&mut self, event: TerminalEvent) -> Next {
+        let event = match event {
+            TerminalEvent::Key(key) => Event::Key(key),
+            TerminalEvent::Resize(width, height) => Event::Resize(Size { width, height }),
+            _ => return Next::Go,
+        };
+        for effect in self.app.event(event) {
+            if let Next::End(code) = self.effect(effect) {
+                return Next::End(code);
+            }
+        }
+        Next::Answer
+    }
+
+    fn effect(&mut self, effect: Effect) -> Next {
+        match effect {
+            Effect::Command(command) => {
+                if command == Command::Runstop {
+                    self.app.stopped();
+                }
+                self.session.commands().send(command);
+            }
+            Effect::OpenEditor { file, line, column } => self.open_editor(&file, line, column),
+            Effect::Quit => return Next::End(ExitCode::SUCCESS),
+            Effect::Suspend => {
+                self.app.stopped();
+                self.session.commands().send(Command::Runstop);
+                if let Err(error) = self.screen.suspend() {
+                    self.app.notice(format!("can't be suspended: {error}"));
+                }
+            }
+            Effect::Redraw => {
+                if let Err(error) = self.screen.resume() {
+                    return Next::End(self.terminal_gone(&error));
+                }
+            }
+        }
+        Next::Answer
+    }
+
+    fn open_editor(&mut self, file: &Arc<str>, line: usize, column: usize) {
+        let size = self.app.options().size;
+        let launch = match Launch::new(Path::new(&**file), line, column, &Surroundings::here(size)) {
+            Ok(launch) => launch,
+            Err(why) => return self.app.notice(why.to_string()),
+        };
+        if launch.manner == Manner::Covering {
+            if !std::mem::replace(&mut self.warned, true) {
+                let warning = "the editor will cover this screen and its stop key while the robot goes on; again to open it (tmux splits instead)";
+                return self.app.notice(warning);
+            }
+            self.held = Some(self.input.hold());
+            self.screen.leave();
+        }
+        let ended = send(&self.happened, Happened::EditorEnded);
+        if let Err(error) = launch.start(ended) {
+            self.editor_ended(Err(format!("the editor can't be opened: {error}")));
+        }
+    }
+
+    fn editor_ended(&mut self, result: Result<(), String>) -> Next {
+        if self.held.take().is_some()
+            && let Err(error) = self.screen.resume()
+        {
+            return Next::End(self.terminal_gone(&error));
+        }
+        if let Err(why) = result {
+            self.app.notice(why);
+        }
+        Next::Answer
+    }
+}

@@ -1,0 +1,77 @@
+use lrp::lua::{Checker, Facts, NameUse, known_fields, known_names};
+use serde_json::json;
+
+use super::{eval, lua};
+
+fn uses(names: &[NameUse]) -> Vec<(&str, u32)> {
+    names.iter().map(|found| (found.name.as_str(), found.line)).collect()
+}
+
+fn facts(code: &str) -> Facts {
+    Checker::new().check(code).unwrap_or_else(|error| panic!("{code}: {error}"))
+}
+
+#[test]
+fn free_names_are_found_with_luas_own_scoping() {
+    let found = facts("local a = b\nlocal function f(c) d = c + a return e.x end\nif a then g = f(h) end");
+    assert_eq!(uses(&found.reads), [("b", 1), ("e", 2), ("h", 3)]);
+    assert_eq!(uses(&found.writes), [("d", 2), ("g", 3)]);
+}
+
+#[test]
+fn words_in_strings_fields_and_comments_are_no_names() {
+    let found = facts("x.y.z('a b' --[[ c ]] .. [[d]], {e = 1, [f] = 2}):m() -- n");
+    assert_eq!(uses(&found.reads), [("x", 1), ("f", 1)]);
+}
+
+#[test]
+fn expressions_have_names_too() {
+    let found = facts("light.data > limit and print");
+    assert_eq!(uses(&found.reads), [("light", 1), ("limit", 1), ("print", 1)]);
+}
+
+#[test]
+fn long_names_and_many_constants_are_no_obstacle() {
+    let long = "a".repeat(60);
+    let many: String = (0..300).map(|n| format!("t[{n}.5] = 'c{n}'\n")).collect();
+    let found = facts(&format!("local t = {{}}\n{many}{long} = late\nlate = {long}\nreturn function() late2 = 1 end"));
+    assert_eq!(uses(&found.reads), [("late", 302), (long.as_str(), 303)]);
+    assert_eq!(uses(&found.writes), [(long.as_str(), 302), ("late", 303), ("late2", 304)]);
+}
+
+#[test]
+fn lines_are_right_in_long_blocks() {
+    let found = facts(&format!("local x\n{}\nreturn function()\n return far end", "\n".repeat(1000)));
+    assert_eq!(uses(&found.reads), [("far", 1004)]);
+}
+
+#[test]
+fn known_names_are_those_at_hand() {
+    let mut lua = lua();
+    let names = eval(
+        &mut lua,
+        "local t = {} for k in pairs(_ENV) do t[#t + 1] = k end table.sort(t) return table.concat(t, ' ')",
+    );
+    assert_eq!(names, json!(known_names().join(" ")));
+    for library in known_names() {
+        let fields = format!(
+            "local t = {{}} if type({library}) == 'table' and {library} ~= _G then for k in pairs({library}) do t[#t + 1] = k end end table.sort(t) return table.concat(t, ' ')"
+        );
+        assert_eq!(eval(&mut lua, &fields), json!(known_fields(library).join(" ")), "{library}");
+    }
+    assert_eq!(known_fields("nothing"), [""; 0]);
+}
+
+#[test]
+fn a_configuration_is_data() {
+    let mut checker = Checker::new();
+    let config = "\n subscribe = { light = '/light std_msgs/msg/Int32' }, -- so\n stale = 500, list = {1, 2}, deep = {{{{{{7}}}}}}";
+    let value = json!({ "subscribe": { "light": "/light std_msgs/msg/Int32" }, "stale": 500, "list": [1, 2], "deep": [[[[[[7]]]]]] });
+    assert_eq!(checker.config(config), Ok(value));
+    assert_eq!(checker.config(""), Ok(json!({})));
+    let error = checker.config("a = 1,\nb = fast").unwrap_err();
+    assert_eq!((error.line, error.token.as_deref()), (2, Some("fast")));
+    assert_eq!(checker.config("a = 1,\n\nb = = 2").unwrap_err().line, 3);
+    assert!(checker.config("a = (function() while true do end end)()").unwrap_err().message.contains("250 ms"));
+    assert_eq!(checker.config("a = 'still here'"), Ok(json!({ "a": "still here" })));
+}

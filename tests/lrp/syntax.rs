@@ -1,0 +1,8 @@
+//! The syntax layer: text in, tree and diagnostics out.
+
+mod corpus;
+mod dump;
+mod lua;
+mod properties;
+mod rendering;
+mod spans;
