@@ -68,7 +68,12 @@ impl Resolver<'_> {
         if machine.is_none() {
             self.unknown_machine(spawn, by);
         }
-        Spawn { machine_name: spawn.machine.text.clone(), state_name: spawn.state.text.clone(), target, span: spawn.span }
+        Spawn {
+            machine_name: spawn.machine.text.clone(),
+            state_name: spawn.state.text.clone(),
+            target,
+            span: spawn.span,
+        }
     }
 
     fn link_transition(&mut self, tree: &ast::Transition, machine: MachineId) {
@@ -102,8 +107,10 @@ impl Resolver<'_> {
                 None => {
                     let name = &self.program[machine].name;
                     let message = format!("`exit` leaves a nested machine, but `{name}` is not nested in a state");
-                    self.diagnostics
-                        .push(Diagnostic::error(Code::ExitAtTop, tree.span, message).help("use `on` to go to a state of the same machine"));
+                    self.diagnostics.push(
+                        Diagnostic::error(Code::ExitAtTop, tree.span, message)
+                            .help("use `on` to go to a state of the same machine"),
+                    );
                     return None;
                 }
             },
@@ -113,7 +120,11 @@ impl Resolver<'_> {
         if target.is_none() {
             self.unknown_state(owner, &tree.target);
             if kind == TransitionKind::Exit && self.program.state_named(machine, &tree.target.text).is_some() {
-                self.help_last(format!("an exit goes to a state of `{}`; `on` goes to one of `{}`", self.name(owner), self.name(machine)));
+                self.help_last(format!(
+                    "an exit goes to a state of `{}`; `on` goes to one of `{}`",
+                    self.name(owner),
+                    self.name(machine)
+                ));
             }
         }
         target
@@ -154,7 +165,8 @@ impl Resolver<'_> {
             }
             return;
         }
-        let states: Vec<StateId> = self.program[machine].states.iter().copied().filter(|&state| transition.leaves(state)).collect();
+        let states: Vec<StateId> =
+            self.program[machine].states.iter().copied().filter(|&state| transition.leaves(state)).collect();
         for state in states {
             self.program.states[state.index()].outgoing.push(id);
         }
@@ -212,7 +224,13 @@ impl Resolver<'_> {
         self.unknown(Code::UnknownState, &what, name, known.iter().map(|name| &**name));
     }
 
-    pub(super) fn unknown<'a>(&mut self, code: Code, what: &str, name: &ast::Name, known: impl IntoIterator<Item = &'a str>) {
+    pub(super) fn unknown<'a>(
+        &mut self,
+        code: Code,
+        what: &str,
+        name: &ast::Name,
+        known: impl IntoIterator<Item = &'a str>,
+    ) {
         let known: Vec<&str> = known.into_iter().collect();
         let help = match nearest(&name.text, known.iter().copied()) {
             Some(near) => format!("did you mean `{near}`?"),

@@ -122,8 +122,12 @@ impl Engine {
         }
         let (code, help) = match failure.kind {
             FailureKind::Runtime => (Code::Runtime, None),
-            FailureKind::OverTime => (Code::OverTime, Some("it is not run again until it is edited or its state is entered anew")),
-            FailureKind::OverMemory => (Code::OverMemory, Some("it is not run again until it is edited or its state is entered anew")),
+            FailureKind::OverTime => {
+                (Code::OverTime, Some("it is not run again until it is edited or its state is entered anew"))
+            }
+            FailureKind::OverMemory => {
+                (Code::OverMemory, Some("it is not run again until it is edited or its state is entered anew"))
+            }
         };
         if code != Code::Runtime {
             self.store.stop(block);
@@ -164,15 +168,26 @@ impl Engine {
         let span = self.failure_span(block, failure);
         let source = self.program.source(span);
         let line = source.line(span.start as usize);
-        let message = format!("`{}.{}` has had no message yet; what needs it is skipped until one comes", missing.bridge, missing.input);
-        let log = Log { level: super::record::Level::Info, message, state: self.program.owner_path(block), file: source.name.clone(), line };
+        let message = format!(
+            "`{}.{}` has had no message yet; what needs it is skipped until one comes",
+            missing.bridge, missing.input
+        );
+        let log = Log {
+            level: super::record::Level::Info,
+            message,
+            state: self.program.owner_path(block),
+            file: source.name.clone(),
+            line,
+        };
         self.rare(What::Log(log));
     }
 
     fn not_boolean(&mut self, block: BlockId, kind: &str) {
         let span = self.program[block].span;
         let (what, help) = match self.program[block].owner {
-            Owner::Event(event) => (format!("event `{}`", self.program[event].name), "compare with something: `x > 0`, `x ~= nil`"),
+            Owner::Event(event) => {
+                (format!("event `{}`", self.program[event].name), "compare with something: `x > 0`, `x ~= nil`")
+            }
             _ => ("this trigger".to_string(), "compare with something: `x > 0`, `x ~= nil`"),
         };
         let message = format!("{what} gives {kind}, not true or false; it doesn't occur");
@@ -181,7 +196,8 @@ impl Engine {
 
     pub(super) fn not_milliseconds(&mut self, transition: TransitionId, var: VarId) {
         let program = Arc::clone(&self.program);
-        let message = format!("timeout `{}` is not a number of milliseconds; the transition is not taken", program[var].name);
+        let message =
+            format!("timeout `{}` is not a number of milliseconds; the transition is not taken", program[var].name);
         let state = program[program[transition].machine].path.clone();
         self.fault(Code::NotMilliseconds, program[transition].span, message, None, state);
     }

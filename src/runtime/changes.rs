@@ -99,7 +99,8 @@ impl Engine {
     /// The last block that ran and assigns a variable; else the last that uses it; else the last of all.
     fn changed_by(&self, var: VarId, touched: &[BlockId]) -> Arc<str> {
         let cell = self.store.cell(var);
-        let assigns = |block: BlockId| self.store.block(block).lua.is_some_and(|lua| self.store.lua.writes(lua).contains(&cell));
+        let assigns =
+            |block: BlockId| self.store.block(block).lua.is_some_and(|lua| self.store.lua.writes(lua).contains(&cell));
         let newest = || touched.iter().rev().copied();
         let block = newest().find(|&block| assigns(block));
         let block = block.or_else(|| newest().find(|&block| self.program[block].uses.contains(&var)));

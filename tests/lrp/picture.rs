@@ -10,7 +10,8 @@ pub fn agrees(view: &View, engine: &Engine) -> Result<(), String> {
         true => Ok(()),
         false => Err(format!("{what}: seen {seen}, is {is}")),
     };
-    let seen: BTreeSet<&str> = view.machines.keys().filter_map(|machine| view.active(machine)).map(|path| &**path).collect();
+    let seen: BTreeSet<&str> =
+        view.machines.keys().filter_map(|machine| view.active(machine)).map(|path| &**path).collect();
     let active = engine.active();
     let is: BTreeSet<&str> = active.iter().map(String::as_str).collect();
     same("active states", format!("{seen:?}"), format!("{is:?}"))?;
@@ -28,7 +29,11 @@ pub fn agrees(view: &View, engine: &Engine) -> Result<(), String> {
     same("values", format!("{seen:?}"), format!("{is:?}"))?;
     for state in &engine.program().states {
         let seen = view.states.get(&state.path).map_or(0, |state| state.visits);
-        same(&format!("visits of {}", state.path), seen.to_string(), engine.visits(&state.path).unwrap_or(0).to_string())?;
+        same(
+            &format!("visits of {}", state.path),
+            seen.to_string(),
+            engine.visits(&state.path).unwrap_or(0).to_string(),
+        )?;
     }
     let seen = view.problems.iter().filter(|problem| problem.origin == Origin::Run);
     let seen = seen.map(|problem| (problem.key.code.clone(), problem.key.line, problem.key.column, problem.count));

@@ -99,7 +99,9 @@ fn edit(stage: &mut Stage, text: String) -> Result<(), String> {
         What::Set { var, .. } => Some(&**var),
         _ => None,
     });
-    before.check(&after, load, &set.collect::<Vec<_>>()).map_err(|wrong| format!("{wrong} by\n{}\n{text}", lines(fresh)))
+    before
+        .check(&after, load, &set.collect::<Vec<_>>())
+        .map_err(|wrong| format!("{wrong} by\n{}\n{text}", lines(fresh)))
 }
 
 fn event(choices: &mut Choices, engine: &Engine) -> Event {
