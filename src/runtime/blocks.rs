@@ -159,7 +159,7 @@ impl Engine {
         place(self.program.source(span), span, failure.line, failure.token.as_deref().map(|token| (token, role)))
     }
 
-    /// Not a mistake: the robot has not spoken yet. Said once for each input.
+    /// Not a mistake: the robot has not spoken, or not lately. Said once for each input.
     fn waiting_for_message(&mut self, block: BlockId, failure: &Failure, missing: super::robot::NoMessage) {
         // Before the first step nothing can have come.
         if self.step == 0 || !self.robots.is_news(&missing) {
@@ -168,10 +168,8 @@ impl Engine {
         let span = self.failure_span(block, failure);
         let source = self.program.source(span);
         let line = source.line(span.start as usize);
-        let message = format!(
-            "`{}.{}` has had no message yet; what needs it is skipped until one comes",
-            missing.bridge, missing.input
-        );
+        let super::robot::NoMessage { bridge, input, why } = &missing;
+        let message = format!("`{bridge}.{input}` {why}; what needs it is skipped until one comes");
         let log = Log {
             level: super::record::Level::Info,
             message,

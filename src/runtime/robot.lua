@@ -141,8 +141,13 @@ local engine = {
     outbox = {}
     return sent
   end,
-  -- The input that a block asked for last, in vain.
-  missed = function() return asked end,
+  -- The input that a block asked for last, and why that is in vain; nothing where it isn't.
+  missed = function()
+    if asked == nil or fresh(asked) ~= nil then return nil end
+    if came[asked] then return asked, "has had no message lately" end
+    if heard[asked] then return asked, "was forgotten and has had no message since" end
+    return asked, "has had no message yet"
+  end,
   offer = function(changed) offer = changed; senders = {} end,
 }
 
