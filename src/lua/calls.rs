@@ -51,6 +51,12 @@ impl Lua {
         result
     }
 
+    /// Whether the variable's value can be changed through another one that holds it too: a table or a function.
+    #[inline]
+    pub fn is_shared(&self, cell: Cell) -> bool {
+        self.stack.is_shared(cell.0)
+    }
+
     /// Evaluates a block into a variable, which stays as it was if that fails.
     pub fn init(&mut self, block: Block, cell: Cell) -> Ran {
         match self.stack.call(block.0, 1) {

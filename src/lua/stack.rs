@@ -194,6 +194,12 @@ impl Stack {
     }
 
     #[inline]
+    pub fn is_shared(&self, cell: u32) -> bool {
+        // SAFETY: the value is on top.
+        self.with(cell, |state| unsafe { ffi::lua_type(state, -1) >= ffi::LUA_TTABLE })
+    }
+
+    #[inline]
     pub fn fingerprint(&self, cell: u32) -> Fingerprint {
         // SAFETY: the value is on top.
         self.with(cell, |state| unsafe { Fingerprint::of(state, -1) })

@@ -6,9 +6,9 @@ use super::engine::Engine;
 use super::faults::Happening;
 use super::record::{Log, What};
 use crate::lua::{self, Failure, FailureKind, Num, Ran};
-use crate::model::blocks::place;
+use crate::model::blocks::{Role, place};
 use crate::model::*;
-use crate::syntax::{Code, Span};
+use crate::syntax::{Code, Diagnostic, Span};
 
 impl Engine {
     pub(super) fn run_all(&mut self, blocks: &[BlockId]) {
@@ -78,6 +78,12 @@ impl Engine {
         self.report(var, "init".into());
     }
 
+    /// As its scope starts anew: a block that ran too long gets another chance.
+    pub(super) fn initialise_anew(&mut self, var: VarId) {
+        self.store.allow_again(self.program[var].init);
+        self.initialise(var);
+    }
+
     fn prepare(&mut self, block: BlockId) -> Option<lua::Block> {
         let function = self.store.ready(block)?;
         let machine = self.store.block(block).machine;
@@ -118,22 +124,44 @@ impl Engine {
         }
         let (code, help) = match failure.kind {
             FailureKind::Runtime => (Code::Runtime, None),
-            FailureKind::OverTime => (Code::OverTime, Some("it is not run again until it is edited or its state is entered anew")),
-            FailureKind::OverMemory => (Code::OverMemory, Some("it is not run again until it is edited or its state is entered anew")),
+            FailureKind::OverTime => {
+                (Code::OverTime, Some("it is not run again until it is edited or its state is entered anew"))
+            }
+            FailureKind::OverMemory => {
+                (Code::OverMemory, Some("it is not run again until it is edited or its state is entered anew"))
+            }
         };
         if code != Code::Runtime {
             self.store.stop(block);
         }
         let span = self.failure_span(block, &failure);
-        self.block_fault(block, code, span, failure.message, help.map(str::to_string));
+        match self.found_before(block, &failure) {
+            Some(found) => self.block_fault(block, found.code, found.span, found.message, found.help),
+            None => self.block_fault(block, code, span, failure.message, help.map(str::to_string)),
+        }
+    }
+
+    /// An unknown name was reported when the program was read: it is the same fault, and now it has happened.
+    fn found_before(&self, block: BlockId, failure: &Failure) -> Option<Diagnostic> {
+        let name = failure.message.strip_prefix("there is no variable or function '")?.split('\'').next()?;
+        let within = self.program[block].span;
+        let is_it = |finding: &&Diagnostic| {
+            let Span { file, start, end } = finding.span;
+            finding.code == Code::UnknownVariable
+                && (file, start >= within.start, end <= within.end) == (within.file, true, true)
+                && self.program.source(within).slice(finding.span) == name
+        };
+        self.program.findings.iter().find(is_it).cloned()
     }
 
     fn failure_span(&self, block: BlockId, failure: &Failure) -> Span {
         let span = self.program[block].span;
-        place(self.program.source(span), span, failure.line, failure.token.as_deref())
+        let is_field = ["(field '", "(method '"].iter().any(|field| failure.message.contains(field));
+        let role = if is_field { Role::Field } else { Role::Name };
+        place(self.program.source(span), span, failure.line, failure.token.as_deref().map(|token| (token, role)))
     }
 
-    /// Not a mistake: the robot has not spoken yet. Said once for each input.
+    /// Not a mistake: the robot has not spoken, or not lately. Said once for each input.
     fn waiting_for_message(&mut self, block: BlockId, failure: &Failure, missing: super::robot::NoMessage) {
         // Before the first step nothing can have come.
         if self.step == 0 || !self.robots.is_news(&missing) {
@@ -142,15 +170,24 @@ impl Engine {
         let span = self.failure_span(block, failure);
         let source = self.program.source(span);
         let line = source.line(span.start as usize);
-        let message = format!("`{}.{}` has had no message yet; what needs it is skipped until one comes", missing.bridge, missing.input);
-        let log = Log { level: super::record::Level::Info, message, state: self.program.owner_path(block), file: source.name.clone(), line };
+        let super::robot::NoMessage { bridge, input, why } = &missing;
+        let message = format!("`{bridge}.{input}` {why}; what needs it is skipped until one comes");
+        let log = Log {
+            level: super::record::Level::Info,
+            message,
+            state: self.program.owner_path(block),
+            file: source.name.clone(),
+            line,
+        };
         self.rare(What::Log(log));
     }
 
     fn not_boolean(&mut self, block: BlockId, kind: &str) {
         let span = self.program[block].span;
         let (what, help) = match self.program[block].owner {
-            Owner::Event(event) => (format!("event `{}`", self.program[event].name), "compare with something: `x > 0`, `x ~= nil`"),
+            Owner::Event(event) => {
+                (format!("event `{}`", self.program[event].name), "compare with something: `x > 0`, `x ~= nil`")
+            }
             _ => ("this trigger".to_string(), "compare with something: `x > 0`, `x ~= nil`"),
         };
         let message = format!("{what} gives {kind}, not true or false; it doesn't occur");
@@ -159,7 +196,8 @@ impl Engine {
 
     pub(super) fn not_milliseconds(&mut self, transition: TransitionId, var: VarId) {
         let program = Arc::clone(&self.program);
-        let message = format!("timeout `{}` is not a number of milliseconds; the transition is not taken", program[var].name);
+        let message =
+            format!("timeout `{}` is not a number of milliseconds; the transition is not taken", program[var].name);
         let state = program[program[transition].machine].path.clone();
         self.fault(Code::NotMilliseconds, program[transition].span, message, None, state);
     }
