@@ -8,16 +8,11 @@ use crate::model::{BlockId, Owner, Program, VarId};
 
 #[derive(Default)]
 pub(super) struct Changes {
-    initialised: Vec<VarId>,
     touched: Vec<BlockId>,
     reach: Reach,
 }
 
 impl Changes {
-    pub fn initialised(&mut self, var: VarId) {
-        self.initialised.push(var);
-    }
-
     /// A block that uses variables has run.
     pub fn touched(&mut self, block: BlockId) {
         self.touched.push(block);
@@ -63,7 +58,6 @@ impl Reach {
 
 impl Engine {
     pub(super) fn report_changes(&mut self) {
-        self.report_initialised();
         let touched = std::mem::take(&mut self.changes.touched);
         for &block in &touched {
             for index in 0..self.program[block].uses.len() {
@@ -105,18 +99,6 @@ impl Engine {
         let block = newest().find(|&block| assigns(block));
         let block = block.or_else(|| newest().find(|&block| self.program[block].uses.contains(&var)));
         block.or_else(|| newest().next()).map(|block| self.program.owner_path(block)).unwrap_or_default()
-    }
-
-    fn report_initialised(&mut self) {
-        let initialised = std::mem::take(&mut self.changes.initialised);
-        for &var in &initialised {
-            if self.is_alive(var) {
-                self.store.lua.changed(self.store.cell(var));
-                self.report(var, "init".into());
-            }
-        }
-        self.changes.initialised = initialised;
-        self.changes.initialised.clear();
     }
 
     pub(super) fn report(&mut self, var: VarId, by: Arc<str>) {

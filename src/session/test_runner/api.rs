@@ -103,7 +103,7 @@ impl Api {
 }
 
 fn library(files: Rc<Files>, folder: PathBuf) -> Library {
-    let disk = modules::library(folder.clone());
+    let disk = modules::library(folder.clone(), |_| ());
     Box::new(move |module| {
         let path = folder.join(module.replace('.', "/")).with_extension("lua");
         let text = match files.written.borrow().get(&path) {
