@@ -75,6 +75,7 @@ fn commanded(command: &Command) -> String {
         Command::Set { var, value } => format!("set {var} {value}"),
         Command::Restart => "restart".into(),
         Command::Runstop => "runstop".into(),
+        Command::FileChanged { file } => format!("file-changed {file}"),
         Command::PutAtStart { bridge } => format!("put-at-start {bridge}"),
     }
 }
