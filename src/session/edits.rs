@@ -37,7 +37,7 @@ pub struct Heard {
 }
 
 impl Heard {
-    pub fn new() -> Heard {
+    pub fn listen() -> Heard {
         let (notes, inbox) = channel();
         Heard { notes, inbox }
     }

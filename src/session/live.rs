@@ -60,7 +60,7 @@ impl Session {
             read => read.map_err(NotStarted::Unreadable)?,
         };
         let folder = folder(&setup.file);
-        let heard = Heard::new();
+        let heard = Heard::listen();
         let library = heard.library(folder.clone());
         let workshop = Workshop { folder, seed: setup.options.seed, robots: Robots::AsProgrammed };
         let engine = EngineThread::start(setup.options, workshop, library, setup.pacing, news);
