@@ -161,7 +161,7 @@ fn shortens(seen: &Seen, meant: &Seen) -> bool {
     };
     // Whole labels choose first, then the longest, so that none takes what only another fits.
     let mut edges = seen.edges.clone();
-    edges.sort_by_key(|(_, _, label)| (part(label).is_some(), Reverse(label.len())));
+    edges.sort_by_key(|edge| (!meant.edges.contains(edge), Reverse(part(&edge.2).map_or(0, |part| part.len()))));
     let mut left = meant.edges.clone();
     let mut takes = |(from, to, label): &(String, String, String)| {
         let same =

@@ -76,7 +76,6 @@ fn commanded(command: &Command) -> String {
         Command::Restart => "restart".into(),
         Command::Runstop => "runstop".into(),
         Command::FileChanged { file } => format!("file-changed {file}"),
-        Command::FileChanged { file } => format!("file-changed {file}"),
         Command::PutAtStart { bridge } => format!("put-at-start {bridge}"),
     }
 }
