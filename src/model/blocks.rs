@@ -1,7 +1,7 @@
 //! What the Lua in a program's blocks refers to: variables, bridges, or nothing known.
 
 use super::names::Names;
-use super::program::Program;
+use super::program::{Block, Program};
 use crate::lua::{self, Checker, NameUse};
 use crate::syntax::lua_tokens::{TokenKind, tokens};
 use crate::syntax::nearest::nearest;
@@ -14,19 +14,25 @@ pub fn resolve_blocks(program: &mut Program, checker: &mut Checker) {
         let facts = match checker.check(&block.code) {
             Ok(facts) => facts,
             Err(error) => {
-                found.push(syntax_diagnostic(program.source(block.span), block.span, &error));
+                let span = error_span(program.source(block.span), block, &error, checker);
+                found.push(explained(program.source(block.span), block.span, span, &error));
                 continue;
             }
         };
         let names = Names::of(program);
         let mut uses = Vec::new();
+        let mut unknown: Vec<&str> = Vec::new();
         for (name, access) in
             facts.reads.iter().map(|name| (name, Access::Read)).chain(facts.writes.iter().map(|name| (name, Access::Write)))
         {
             match names.var(block.machine, &name.name) {
                 Some(var) if !uses.contains(&var) => uses.push(var),
                 Some(_) => {}
-                None => found.extend(unknown_name(program, index, name, access)),
+                None if unknown.contains(&&*name.name) => {}
+                None => {
+                    unknown.push(&name.name);
+                    found.extend(unknown_name(program, index, name, access));
+                }
             }
         }
         program.blocks[index].uses = uses;
@@ -44,7 +50,7 @@ fn unknown_name(program: &Program, block: usize, name: &NameUse, access: Access)
     let block = &program.blocks[block];
     let is_bridge = program.bridges.iter().any(|bridge| *bridge.name == *name.name);
     let is_at_hand = lua::known_names().contains(&&*name.name);
-    let span = place(program.source(block.span), block.span, name.line, Some(&name.name));
+    let span = place(program.source(block.span), block.span, name.line, Some((&name.name, Role::Name)));
     match access {
         Access::Read if is_bridge || is_at_hand => None,
         Access::Write if is_bridge || is_at_hand => {
@@ -66,13 +72,45 @@ fn unknown_name(program: &Program, block: usize, name: &NameUse, access: Access)
 }
 
 pub fn syntax_diagnostic(source: &Source, block: Span, error: &lua::SyntaxError) -> Diagnostic {
-    let span = place(source, block, error.line, error.token.as_deref());
+    let token = error.token.as_deref().map(|token| (token, Role::Any));
+    let span = match error.message.ends_with("near <eof>") {
+        true => end_of(source, block),
+        false => place(source, block, error.line, token),
+    };
+    explained(source, block, span, error)
+}
+
+/// Where a block ends too early: at what closes it.
+fn end_of(source: &Source, block: Span) -> Span {
+    let close = source.text[block.end as usize..].chars().next().map_or(0, char::len_utf8);
+    Span::new(block.file, block.end as usize, block.end as usize + close)
+}
+
+fn explained(source: &Source, block: Span, span: Span, error: &lua::SyntaxError) -> Diagnostic {
     let near = span.start.saturating_sub(block.start) as usize;
+    let message = error.message_in(source.line(block.start as usize) as u32);
     if let Some(help) = smalltalk(source.slice(block), near) {
-        let message = format!("this looks like Smalltalk; blocks are Lua: {}", error.message);
+        let message = format!("this looks like Smalltalk; blocks are Lua: {message}");
         return Diagnostic::error(Code::Smalltalk, span, message).help(help);
     }
-    Diagnostic::error(Code::LuaSyntax, span, error.message.clone())
+    Diagnostic::error(Code::LuaSyntax, span, message)
+}
+
+/// Lua tells the line and the token, which may stand there more than once: the one meant is the first up to which the
+/// code already gives the same error.
+fn error_span(source: &Source, block: &Block, error: &lua::SyntaxError, checker: &mut Checker) -> Span {
+    let offset = block.span.start as usize;
+    let first = source.line(offset);
+    let in_line = |at: usize| source.line(offset + at) == first + error.line.max(1) as usize - 1;
+    let candidates = tokens(&block.code)
+        .map(|token| token.range)
+        .filter(|range| in_line(range.start) && Some(&block.code[range.clone()]) == error.token.as_deref());
+    for range in candidates {
+        if checker.check(&block.code[..range.end]).is_err_and(|same| same == *error) {
+            return Span::new(block.span.file, offset + range.start, offset + range.end);
+        }
+    }
+    syntax_diagnostic(source, block.span, error).span
 }
 
 /// What to write in Lua, where a block that doesn't compile has the marks of Smalltalk.
@@ -89,28 +127,50 @@ fn smalltalk(code: &str, near: usize) -> Option<&'static str> {
     }
 }
 
+/// What a sought name is in the code.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Role {
+    /// Not a field.
+    Name,
+    /// After a dot or a colon.
+    Field,
+    Any,
+}
+
 /// The span of a name in a line (from 1) of a block, or of the line's code where the name is not found.
-pub fn place(source: &Source, block: Span, line: u32, name: Option<&str>) -> Span {
+pub fn place(source: &Source, block: Span, line: u32, name: Option<(&str, Role)>) -> Span {
     let first = source.line(block.start as usize);
     let range = source.line_range(first + line.max(1) as usize - 1);
     let start = range.start.clamp(block.start as usize, block.end as usize);
     let end = range.end.clamp(start, block.end as usize);
     let at = |start: usize, end: usize| Span::new(block.file, start, end);
-    let code = &source.text[block.range()];
-    let named = name.and_then(|name| {
-        let offset = block.start as usize;
-        let mut in_line = tokens(code)
-            .filter(|token| !matches!(token.kind, TokenKind::Comment))
-            .map(|token| (token.range.start + offset, token.range.end + offset))
-            .filter(|&(from, _)| (start..end.max(start + 1)).contains(&from));
-        in_line.find(|&(from, to)| source.text.get(from..to) == Some(name))
-    });
-    match named {
-        Some((start, end)) => at(start, end),
+    match name.and_then(|name| find_name(source, block, start..end.max(start + 1), name)) {
+        Some(found) => found,
         None => {
             let line = &source.text[start..end];
             let indent = line.len() - line.trim_start().len();
             at((start + indent).min(end), start + line.trim_end().len().max(indent.min(line.len())))
         }
     }
+}
+
+/// The first such name among the tokens that begin in a range; one of another role where there is none of this.
+fn find_name(source: &Source, block: Span, range: std::ops::Range<usize>, (name, role): (&str, Role)) -> Option<Span> {
+    let code = source.slice(block);
+    let offset = block.start as usize;
+    let mut after_dot = false;
+    let mut other = None;
+    for token in tokens(code).filter(|token| !matches!(token.kind, TokenKind::Comment)) {
+        let text = &code[token.range.clone()];
+        let is_field = std::mem::replace(&mut after_dot, matches!(text, "." | ":"));
+        if text != name || !range.contains(&(offset + token.range.start)) {
+            continue;
+        }
+        let span = Span::new(block.file, offset + token.range.start, offset + token.range.end);
+        if role == Role::Any || (role == Role::Field) == is_field {
+            return Some(span);
+        }
+        other.get_or_insert(span);
+    }
+    other
 }

@@ -6,9 +6,9 @@ use super::engine::Engine;
 use super::faults::Happening;
 use super::record::{Log, What};
 use crate::lua::{self, Failure, FailureKind, Num, Ran};
-use crate::model::blocks::place;
+use crate::model::blocks::{Role, place};
 use crate::model::*;
-use crate::syntax::{Code, Span};
+use crate::syntax::{Code, Diagnostic, Span};
 
 impl Engine {
     pub(super) fn run_all(&mut self, blocks: &[BlockId]) {
@@ -76,6 +76,12 @@ impl Engine {
         self.ran(block);
     }
 
+    /// As its scope starts anew: a block that ran too long gets another chance.
+    pub(super) fn initialise_anew(&mut self, var: VarId) {
+        self.store.allow_again(self.program[var].init);
+        self.initialise(var);
+    }
+
     fn prepare(&mut self, block: BlockId) -> Option<lua::Block> {
         let function = self.store.ready(block)?;
         let machine = self.store.block(block).machine;
@@ -123,12 +129,23 @@ impl Engine {
             self.store.stop(block);
         }
         let span = self.failure_span(block, &failure);
-        self.block_fault(block, code, span, failure.message, help.map(str::to_string));
+        match self.found_before(span).filter(|_| code == Code::Runtime) {
+            Some(found) => self.block_fault(block, found.code, span, found.message, found.help),
+            None => self.block_fault(block, code, span, failure.message, help.map(str::to_string)),
+        }
+    }
+
+    /// An unknown name was reported when the program was read: it is the same fault, and now it has happened.
+    fn found_before(&self, span: Span) -> Option<Diagnostic> {
+        let mut findings = self.program.findings.iter();
+        findings.find(|finding| finding.code == Code::UnknownVariable && finding.span == span).cloned()
     }
 
     fn failure_span(&self, block: BlockId, failure: &Failure) -> Span {
         let span = self.program[block].span;
-        place(self.program.source(span), span, failure.line, failure.token.as_deref())
+        let is_field = ["(field '", "(method '"].iter().any(|field| failure.message.contains(field));
+        let role = if is_field { Role::Field } else { Role::Name };
+        place(self.program.source(span), span, failure.line, failure.token.as_deref().map(|token| (token, role)))
     }
 
     /// Not a mistake: the robot has not spoken yet. Said once for each input.

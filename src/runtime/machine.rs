@@ -14,6 +14,22 @@ pub(super) struct Fired {
     via: Option<StateId>,
 }
 
+/// What spawns a machine: a spawn statement at top level, or one of a state's onentry items.
+#[derive(Clone, Copy)]
+pub(super) enum Spawner {
+    Top { index: usize },
+    Entry { state: StateId, index: u32 },
+}
+
+impl Spawner {
+    fn state(self) -> Option<StateId> {
+        match self {
+            Spawner::Top { .. } => None,
+            Spawner::Entry { state, .. } => Some(state),
+        }
+    }
+}
+
 impl Engine {
     pub(super) fn step_machine(&mut self, plan: &Plan, machine: MachineId) {
         let Some(state) = self.active_state(machine) else { return };
@@ -26,6 +42,10 @@ impl Engine {
         for index in 0..self.nested_count(machine) {
             self.step_machine(plan, self.nested(machine, index));
         }
+    }
+
+    pub(super) fn runs(&self, machine: MachineId) -> bool {
+        self.running[machine.index()].is_some()
     }
 
     pub(super) fn active_state(&self, machine: MachineId) -> Option<StateId> {
@@ -134,8 +154,10 @@ impl Engine {
         for &item in plan.onentry(state) {
             match item {
                 EntryItem::Action(block) => self.run(block),
-                EntryItem::Spawn(Some((machine, start))) => self.spawn(plan, machine, start, Some(state)),
-                EntryItem::Spawn(None) => {}
+                EntryItem::Spawn(index, Some((machine, start))) => {
+                    self.spawn(plan, machine, start, Spawner::Entry { state, index });
+                }
+                EntryItem::Spawn(_, None) => {}
             }
         }
     }
@@ -154,14 +176,15 @@ impl Engine {
     }
 
     /// A block that ran too long gets another chance when its state is entered anew.
-    fn allow_blocks_of(&mut self, state: StateId) {
+    fn allow_blocks_of(&mut self, entered: StateId) {
         let program = std::sync::Arc::clone(&self.program);
-        let state = &program[state];
+        let state = &program[entered];
         let actions = state.onentry.iter().filter_map(|entry| match entry {
             Entry::Action(block) => Some(*block),
             Entry::Spawn(_) => None,
         });
-        let guards = state.outgoing.iter().chain(&state.exits).filter_map(|&id| match program[id].trigger {
+        let own = program[state.machine].transitions.iter().filter(|&&id| program[id].leaves(entered));
+        let guards = own.chain(&state.exits).filter_map(|&id| match program[id].trigger {
             Trigger::Event(event) => Some(program[event].block),
             Trigger::Block(block) | Trigger::AfterBlock(block) => Some(block),
             _ => None,
@@ -171,12 +194,12 @@ impl Engine {
         }
     }
 
-    /// Starts a machine in a state; `by` is the state whose onentry does it, none at top level.
-    pub(super) fn spawn(&mut self, plan: &Plan, machine: MachineId, state: StateId, by: Option<StateId>) {
+    /// Starts a machine in a state.
+    pub(super) fn spawn(&mut self, plan: &Plan, machine: MachineId, state: StateId, spawner: Spawner) {
         if self.running[machine.index()].is_some() {
-            return self.already_running(machine, by);
+            return self.already_running(machine, spawner);
         }
-        self.start(machine, state, by);
+        self.start(machine, state, spawner.state());
         self.enter(plan, machine, state);
     }
 
@@ -190,7 +213,7 @@ impl Engine {
         }
         self.note(Note::Spawn { machine, by });
         for index in 0..self.program[machine].vars.len() {
-            self.initialise(self.program[machine].vars[index]);
+            self.initialise_anew(self.program[machine].vars[index]);
         }
     }
 
@@ -210,20 +233,18 @@ impl Engine {
         }
     }
 
-    fn already_running(&mut self, machine: MachineId, by: Option<StateId>) {
+    fn already_running(&mut self, machine: MachineId, spawner: Spawner) {
         let program = std::sync::Arc::clone(&self.program);
-        let spawns_it = |spawn: &&Spawn| spawn.target.is_some_and(|(target, _)| target == machine);
-        let spawn = match by {
-            Some(state) => program[state].onentry.iter().find_map(|entry| match entry {
-                Entry::Spawn(spawn) => Some(spawn).filter(spawns_it),
-                Entry::Action(_) => None,
-            }),
-            None => program.spawns.iter().find(spawns_it),
+        let span = match spawner {
+            Spawner::Top { index } => program.spawns[index].span,
+            Spawner::Entry { state, index } => match &program[state].onentry[index as usize] {
+                Entry::Spawn(spawn) => spawn.span,
+                Entry::Action(block) => program[*block].span,
+            },
         };
-        let span = spawn.map_or(program[machine].span, |spawn| spawn.span);
         let message = format!("machine `{}` is running already; it goes on undisturbed", program[machine].path);
         let help = "a machine runs at most once: write a second machine, or leave the state that spawned it first";
-        let state = by.map(|state| program[state].path.clone()).unwrap_or_default();
+        let state = spawner.state().map(|state| program[state].path.clone()).unwrap_or_default();
         self.fault(Code::AlreadyRunning, span, message, Some(help.to_string()), state);
     }
 }

@@ -39,7 +39,7 @@ pub enum Test {
 pub enum EntryItem {
     Action(BlockId),
     /// Which of the state's onentry items, and what it spawns; none where that doesn't exist.
-    Spawn(Option<(MachineId, StateId)>),
+    Spawn(u32, Option<(MachineId, StateId)>),
 }
 
 impl Plan {
@@ -49,7 +49,7 @@ impl Plan {
             let state = StatePlan {
                 outgoing: append(&mut plan.guards, state.outgoing.iter().filter_map(|&id| guard(program, id))),
                 exits: append(&mut plan.guards, state.exits.iter().filter_map(|&id| guard(program, id))),
-                onentry: append(&mut plan.entries, state.onentry.iter().map(entry)),
+                onentry: append(&mut plan.entries, state.onentry.iter().enumerate().map(entry)),
                 running: append(&mut plan.actions, state.running.iter().copied()),
                 onexit: append(&mut plan.actions, state.onexit.iter().copied()),
             };
@@ -102,9 +102,9 @@ fn guard(program: &Program, transition: TransitionId) -> Option<Guard> {
     Some(Guard { transition, test })
 }
 
-fn entry(entry: &Entry) -> EntryItem {
+fn entry((index, entry): (usize, &Entry)) -> EntryItem {
     match entry {
         Entry::Action(block) => EntryItem::Action(*block),
-        Entry::Spawn(spawn) => EntryItem::Spawn(spawn.target),
+        Entry::Spawn(spawn) => EntryItem::Spawn(index as u32, spawn.target),
     }
 }

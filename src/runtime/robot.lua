@@ -6,6 +6,7 @@ local latest = {}   -- input -> its last message
 local came = {}     -- input -> program time in ms at which that came
 local asked         -- the last input that a block asked for while it had no message
 local outbox = {}   -- { output, message } in the order sent
+local heard = {}    -- input -> true once a message came, though it may have been forgotten since
 local senders = {}  -- output -> the function that sends it
 
 local function names(ports)
@@ -77,7 +78,7 @@ local function fresh(input)
 end
 
 local function is_input(key)
-  return offer.inputs[key] ~= nil or latest[key] ~= nil
+  return offer.inputs[key] ~= nil or heard[key] ~= nil
 end
 
 local function age(_, input)
@@ -120,7 +121,7 @@ local robot = setmetatable({}, {
 
 local engine = {
   receive = function(input, message, time)
-    latest[input], came[input] = message, time
+    latest[input], came[input], heard[input] = message, time, true
   end,
   take = function()
     if #outbox == 0 then return nil end

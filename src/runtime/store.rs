@@ -1,7 +1,7 @@
 //! The Lua side of a program: its variables as cells and its blocks as compiled functions. Both outlive an edit that
 //! doesn't concern them.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, VecDeque};
 use std::sync::Arc;
 
 use crate::lua::{self, Cell, Lua, SyntaxError};
@@ -90,15 +90,15 @@ impl Store {
     }
 
     fn take_over_blocks(&mut self, new: &Program) -> Vec<Uncompiled> {
-        let mut kept: HashMap<Key, Vec<Compiled>> = HashMap::new();
+        let mut kept: HashMap<Key, VecDeque<Compiled>> = HashMap::new();
         for (key, compiled) in self.keys.drain(..).zip(self.blocks.drain(..)) {
-            kept.entry(key).or_default().push(compiled);
+            kept.entry(key).or_default().push_back(compiled);
         }
         self.stopped = 0;
         let mut uncompiled = Vec::new();
         for (index, block) in new.blocks.iter().enumerate() {
             let key = (block.code.clone(), block.uses.iter().map(|&var| self.cell(var)).collect());
-            let mut compiled = match kept.get_mut(&key).and_then(Vec::pop) {
+            let mut compiled = match kept.get_mut(&key).and_then(VecDeque::pop_front) {
                 Some(compiled) => compiled,
                 None => self.compile(new, block).unwrap_or_else(|error| {
                     uncompiled.push(Uncompiled { block: BlockId(index as u32), error });
