@@ -10,6 +10,8 @@ use crate::model::{BlockId, Owner, Program, VarId};
 pub(super) struct Changes {
     initialised: Vec<VarId>,
     touched: Vec<BlockId>,
+    /// Groups that what was touched belongs to; kept for its memory.
+    reached: Vec<usize>,
     reach: Reach,
 }
 
@@ -62,7 +64,14 @@ impl Reach {
 }
 
 impl Engine {
+    #[inline]
     pub(super) fn report_changes(&mut self) {
+        if !self.changes.touched.is_empty() || !self.changes.initialised.is_empty() {
+            self.compare();
+        }
+    }
+
+    fn compare(&mut self) {
         self.report_initialised();
         let touched = std::mem::take(&mut self.changes.touched);
         for &block in &touched {
@@ -79,15 +88,17 @@ impl Engine {
     /// What blocks changed that don't name it: through a function or a table that another variable holds as well.
     fn report_reached(&mut self, touched: &[BlockId]) {
         let uses = touched.iter().filter_map(|&block| self.program[block].uses.first());
-        let mut reached: Vec<usize> = uses.map(|var| self.changes.reach.group[var.index()]).collect();
+        let mut reached = std::mem::take(&mut self.changes.reached);
+        reached.extend(uses.map(|var| self.changes.reach.group[var.index()]));
         reached.sort_unstable();
         reached.dedup();
-        for group in reached {
+        for group in reached.drain(..) {
             for index in 0..self.changes.reach.groups[group].len() {
                 let var = self.changes.reach.groups[group][index];
                 self.report_if_changed(var, touched);
             }
         }
+        self.changes.reached = reached;
     }
 
     fn report_if_changed(&mut self, var: VarId, touched: &[BlockId]) {
