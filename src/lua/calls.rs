@@ -49,13 +49,9 @@ impl Lua {
         if let [block] = blocks {
             return Some(0).filter(|_| self.run(*block) == Ran::Failed);
         }
-        match self.stack.run_all(blocks)? {
-            (at, End::Trouble(trouble)) => {
-                self.fail(blocks[at], trouble);
-                Some(at)
-            }
-            _ => None,
-        }
+        let (at, trouble) = self.stack.run_all(blocks)?;
+        self.fail(blocks[at], trouble);
+        Some(at)
     }
 
     /// Runs an action; its value is dropped.

@@ -38,23 +38,25 @@ impl Stack {
 
     /// Calls blocks in order, until one fails: which, and why.
     #[inline]
-    pub fn run_all(&self, blocks: &[Block]) -> Option<(usize, End)> {
-        self.rounds(blocks, run_round)
+    pub fn run_all(&self, blocks: &[Block]) -> Option<(usize, Trouble)> {
+        match self.rounds(blocks, run_round)? {
+            (at, End::Trouble(trouble)) => Some((at, trouble)),
+            _ => None,
+        }
     }
 
     #[inline]
     fn rounds(&self, blocks: &[Block], calls: ffi::lua_CFunction) -> Option<(usize, End)> {
-        let mut before = 0;
-        for blocks in blocks.chunks(LONGEST) {
-            if let Some((at, end)) = self.round(blocks, calls) {
-                return Some((before + at, end));
-            }
-            before += blocks.len();
-        }
-        None
+        if blocks.len() > LONGEST { self.many_rounds(blocks, calls) } else { self.round(blocks, calls) }
     }
 
-    #[inline]
+    #[cold]
+    fn many_rounds(&self, blocks: &[Block], calls: ffi::lua_CFunction) -> Option<(usize, End)> {
+        let (first, rest) = blocks.split_at(LONGEST);
+        let ended = self.round(first, calls);
+        ended.or_else(|| self.rounds(rest, calls).map(|(at, end)| (LONGEST + at, end)))
+    }
+
     fn round(&self, blocks: &[Block], calls: ffi::lua_CFunction) -> Option<(usize, End)> {
         let mut round = Round { guard: self.guard(), left: blocks.len(), end: None };
         let state = self.state();

@@ -1,5 +1,6 @@
 //! Running a program's blocks: each on its own, so that a mistake in one costs that one alone.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::engine::Engine;
@@ -23,7 +24,7 @@ impl Engine {
         while !part.is_empty() {
             let failed = self.store.lua.run_all(&functions[part.clone()]).map(|at| part.start + at);
             let end = failed.map_or(part.end, |at| at + 1);
-            self.ran_all(actions, &blocks[part.start..end]);
+            self.ran_all(actions, blocks, part.start..end);
             if let Some(at) = failed {
                 self.failed(blocks[at]);
             }
@@ -39,7 +40,7 @@ impl Engine {
         while !part.is_empty() {
             let found = self.store.lua.test_all(&functions[part.clone()]).map(|(at, test)| (part.start + at, test));
             let end = found.map_or(part.end, |(at, _)| at + 1);
-            self.ran_all(conditions, &blocks[part.start..end]);
+            self.ran_all(conditions, blocks, part.start..end);
             match found {
                 Some((at, lua::Test::True)) => return Some(at),
                 Some((at, lua::Test::Failed)) => self.failed(blocks[at]),
@@ -105,14 +106,16 @@ impl Engine {
     }
 
     /// Has `elapsed()` count from when a machine's active state was entered.
+    #[inline]
     fn count_from_entry(&mut self, machine: Option<MachineId>) {
         let entered = machine.and_then(|machine| self.running[machine.index()].as_ref()).map(|running| running.entered);
         self.store.lua.since(entered.unwrap_or_default().ms());
     }
 
-    fn ran_all(&mut self, calls: Calls, blocks: &[BlockId]) {
+    #[inline]
+    fn ran_all(&mut self, calls: Calls, blocks: &[BlockId], these: Range<usize>) {
         if calls.use_variables {
-            blocks.iter().for_each(|&block| self.note_touched(block));
+            blocks[these].iter().for_each(|&block| self.note_touched(block));
         }
         self.note_logs();
     }
@@ -128,12 +131,14 @@ impl Engine {
         }
     }
 
+    #[inline]
     fn note_logs(&mut self) {
         if self.store.lua.has_logs() {
             self.take_logs();
         }
     }
 
+    #[cold]
     pub(super) fn take_logs(&mut self) {
         for line in self.store.lua.take_logs() {
             let place = line.block.and_then(|function| self.store.find(function));
@@ -150,6 +155,7 @@ impl Engine {
         }
     }
 
+    #[cold]
     fn failed(&mut self, block: BlockId) {
         let failure = self.store.lua.take_failure();
         if let Some(missing) = self.robots.no_message(&failure.message) {
@@ -197,6 +203,7 @@ impl Engine {
         self.rare(What::Log(log));
     }
 
+    #[cold]
     fn not_boolean(&mut self, block: BlockId, kind: &str) {
         let span = self.program[block].span;
         let (what, help) = match self.program[block].owner {

@@ -136,6 +136,7 @@ impl Engine {
         }
     }
 
+    #[inline]
     pub(super) fn note(&mut self, note: Note) {
         self.notes.push(note);
     }

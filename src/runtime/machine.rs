@@ -84,6 +84,7 @@ impl Engine {
     }
 
     /// Which of a guard's transitions may be taken, if any.
+    #[inline]
     fn holds(&mut self, plan: &Plan, guard: &Guard, machine: MachineId) -> Option<usize> {
         let due = match guard.test {
             Test::Blocks(conditions) => return self.first_true(plan, conditions),
@@ -132,10 +133,14 @@ impl Engine {
         }
     }
 
+    #[inline]
     pub(super) fn discard_nested(&mut self, machine: MachineId) {
-        if self.nested_count(machine) == 0 {
-            return;
+        if self.nested_count(machine) > 0 {
+            self.discard_all_nested(machine);
         }
+    }
+
+    fn discard_all_nested(&mut self, machine: MachineId) {
         let nested = self.running[machine.index()].as_mut().map(|running| std::mem::take(&mut running.nested));
         for machine in nested.unwrap_or_default() {
             self.discard(machine);

@@ -16,6 +16,7 @@ mod tracer;
 mod watch;
 mod checks;
 mod edits;
+mod isolation;
 mod layers;
 mod lines;
 mod picture;
