@@ -98,6 +98,19 @@ impl Guard {
         self.armed.load(Relaxed) != 0 && self.disarm()
     }
 
+    /// The call has ended and another begins; unless it is being stopped: then it goes on, to be left.
+    #[inline]
+    pub fn next(&self) -> bool {
+        compiler_fence(SeqCst);
+        if self.is_over() {
+            return false;
+        }
+        // Should the call be stopped right here, it has ended in time, and its hook takes itself away.
+        self.call.store(self.call.load(Relaxed) + 2, Relaxed);
+        compiler_fence(SeqCst);
+        true
+    }
+
     #[cold]
     fn disarm(&self) -> bool {
         // SAFETY: the state is live as long as calls are made.

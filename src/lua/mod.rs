@@ -17,6 +17,7 @@ mod guard;
 mod log;
 mod message;
 mod pattern;
+mod round;
 mod sandbox;
 mod search;
 mod source;

@@ -1,9 +1,11 @@
 //! Running a program's blocks: each on its own, so that a mistake in one costs that one alone.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::engine::Engine;
 use super::faults::Happening;
+use super::plan::{Calls, Plan};
 use super::record::{Log, What};
 use crate::lua::{self, Failure, FailureKind, Num, Ran};
 use crate::model::blocks::{Role, place};
@@ -11,10 +13,43 @@ use crate::model::*;
 use crate::syntax::{Code, Diagnostic, Span};
 
 impl Engine {
-    pub(super) fn run_all(&mut self, blocks: &[BlockId]) {
-        for &block in blocks {
-            self.run(block);
+    /// Runs actions one after another.
+    pub(super) fn run_all(&mut self, plan: &Plan, actions: Calls) {
+        if actions.is_empty() {
+            return;
         }
+        self.count_from_entry(actions.machine);
+        let (blocks, functions) = (plan.blocks(actions), plan.functions(actions));
+        let mut part = self.store.ready_part(blocks, 0);
+        while !part.is_empty() {
+            let failed = self.store.lua.run_all(&functions[part.clone()]).map(|at| part.start + at);
+            let end = failed.map_or(part.end, |at| at + 1);
+            self.ran_all(actions, blocks, part.start..end);
+            if let Some(at) = failed {
+                self.failed(blocks[at]);
+            }
+            part = self.store.ready_part(blocks, end);
+        }
+    }
+
+    /// Which of these conditions is the first that is true: one that fails isn't, nor what is no boolean.
+    pub(super) fn first_true(&mut self, plan: &Plan, conditions: Calls) -> Option<usize> {
+        self.count_from_entry(conditions.machine);
+        let (blocks, functions) = (plan.blocks(conditions), plan.functions(conditions));
+        let mut part = self.store.ready_part(blocks, 0);
+        while !part.is_empty() {
+            let found = self.store.lua.test_all(&functions[part.clone()]).map(|(at, test)| (part.start + at, test));
+            let end = found.map_or(part.end, |(at, _)| at + 1);
+            self.ran_all(conditions, blocks, part.start..end);
+            match found {
+                Some((at, lua::Test::True)) => return Some(at),
+                Some((at, lua::Test::Failed)) => self.failed(blocks[at]),
+                Some((at, lua::Test::NotBoolean(kind))) => self.not_boolean(blocks[at], kind),
+                Some((_, lua::Test::False)) | None => {}
+            }
+            part = self.store.ready_part(blocks, end);
+        }
+        None
     }
 
     pub(super) fn run(&mut self, block: BlockId) {
@@ -23,24 +58,6 @@ impl Engine {
             self.failed(block);
         }
         self.ran(block);
-    }
-
-    pub(super) fn test(&mut self, block: BlockId) -> bool {
-        let Some(function) = self.prepare(block) else { return false };
-        let result = self.store.lua.test(function);
-        self.ran(block);
-        match result {
-            lua::Test::True => true,
-            lua::Test::False => false,
-            lua::Test::Failed => {
-                self.failed(block);
-                false
-            }
-            lua::Test::NotBoolean(kind) => {
-                self.not_boolean(block, kind);
-                false
-            }
-        }
     }
 
     /// The value of a timeout's block, in milliseconds.
@@ -86,21 +103,44 @@ impl Engine {
 
     fn prepare(&mut self, block: BlockId) -> Option<lua::Block> {
         let function = self.store.ready(block)?;
-        let machine = self.store.block(block).machine;
-        let entered = machine.and_then(|machine| self.running[machine.index()].as_ref()).map(|running| running.entered);
-        self.store.lua.since(entered.unwrap_or_default().ms());
+        self.count_from_entry(self.store.block(block).machine);
         Some(function)
     }
 
+    /// Has `elapsed()` count from when a machine's active state was entered.
+    #[inline]
+    fn count_from_entry(&mut self, machine: Option<MachineId>) {
+        let entered = machine.and_then(|machine| self.running[machine.index()].as_ref()).map(|running| running.entered);
+        self.store.lua.since(entered.unwrap_or_default().ms());
+    }
+
+    #[inline]
+    fn ran_all(&mut self, calls: Calls, blocks: &[BlockId], these: Range<usize>) {
+        if calls.use_variables {
+            blocks[these].iter().for_each(|&block| self.note_touched(block));
+        }
+        self.note_logs();
+    }
+
     fn ran(&mut self, block: BlockId) {
+        self.note_touched(block);
+        self.note_logs();
+    }
+
+    fn note_touched(&mut self, block: BlockId) {
         if self.store.block(block).uses_variables {
             self.changes.touched(block);
         }
+    }
+
+    #[inline]
+    fn note_logs(&mut self) {
         if self.store.lua.has_logs() {
             self.take_logs();
         }
     }
 
+    #[cold]
     pub(super) fn take_logs(&mut self) {
         for line in self.store.lua.take_logs() {
             let place = line.block.and_then(|function| self.store.find(function));
@@ -117,6 +157,7 @@ impl Engine {
         }
     }
 
+    #[cold]
     fn failed(&mut self, block: BlockId) {
         let failure = self.store.lua.take_failure();
         if let Some(missing) = self.robots.no_message(&failure.message) {
@@ -182,6 +223,7 @@ impl Engine {
         self.rare(What::Log(log));
     }
 
+    #[cold]
     fn not_boolean(&mut self, block: BlockId, kind: &str) {
         let span = self.program[block].span;
         let (what, help) = match self.program[block].owner {

@@ -25,7 +25,14 @@ impl Changes {
 }
 
 impl Engine {
+    #[inline]
     pub(super) fn report_changes(&mut self) {
+        if !self.changes.touched.is_empty() {
+            self.compare();
+        }
+    }
+
+    fn compare(&mut self) {
         let touched = std::mem::take(&mut self.changes.touched);
         let mut reaches_others = false;
         for &block in &touched {

@@ -65,12 +65,11 @@ impl Engine {
         let next = then.first().copied();
         for &item in plan.onentry(state) {
             match item {
-                EntryItem::Action(block) => self.run(block),
-                EntryItem::Spawn(index, Some((nested, start))) => match next {
+                EntryItem::Actions(actions) => self.run_all(plan, actions),
+                EntryItem::Spawn(index, (nested, start)) => match next {
                     Some((wanted, _)) if wanted == nested && !self.runs(nested) => self.spawn_on_way(plan, state, then),
                     _ => self.spawn(plan, nested, start, Spawner::Entry { state, index }),
                 },
-                EntryItem::Spawn(_, None) => {}
             }
         }
         if let Some((wanted, _)) = next

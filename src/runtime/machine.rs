@@ -38,7 +38,7 @@ impl Engine {
             self.settle(plan, machine);
             return;
         }
-        self.run_all(plan.running(state));
+        self.run_all(plan, plan.running(state));
         for index in 0..self.nested_count(machine) {
             self.step_machine(plan, self.nested(machine, index));
         }
@@ -63,15 +63,16 @@ impl Engine {
     /// The first transition that may be taken now: the machine's own, then exits of machines written in the state.
     fn firing(&mut self, plan: &Plan, machine: MachineId, state: StateId) -> Option<Fired> {
         for guard in plan.outgoing(state) {
-            if self.holds(guard, machine) {
-                return self.fired(guard.transition, None);
+            if let Some(index) = self.holds(plan, guard, machine) {
+                return self.fired(plan.transition(guard, index), None);
             }
         }
         for guard in plan.exits(state) {
-            let nested = self.program[guard.transition].machine;
+            let transition = plan.transition(guard, 0);
+            let nested = self.program[transition].machine;
             let Some(inner) = self.active_state(nested) else { continue };
-            if self.program[guard.transition].leaves(inner) && self.holds(guard, nested) {
-                return self.fired(guard.transition, Some(inner));
+            if self.program[transition].leaves(inner) && self.holds(plan, guard, nested).is_some() {
+                return self.fired(transition, Some(inner));
             }
         }
         None
@@ -82,20 +83,23 @@ impl Engine {
         Some(Fired { transition, target, via })
     }
 
-    fn holds(&mut self, guard: &Guard, machine: MachineId) -> bool {
-        match guard.test {
+    /// Which of a guard's transitions may be taken, if any.
+    #[inline]
+    fn holds(&mut self, plan: &Plan, guard: &Guard, machine: MachineId) -> Option<usize> {
+        let due = match guard.test {
+            Test::Blocks(conditions) => return self.first_true(plan, conditions),
             Test::Always => true,
-            Test::Block(block) => self.test(block),
             Test::After(timeout) => self.since_entry(machine) >= timeout,
-            Test::AfterVar(var, transition) => {
+            Test::AfterVar(var) => {
                 let ms = self.store.lua.number_in(self.store.cell(var));
                 if ms.is_none() {
-                    self.not_milliseconds(transition, var);
+                    self.not_milliseconds(plan.transition(guard, 0), var);
                 }
                 ms.is_some_and(|ms| self.is_due(machine, ms))
             }
             Test::AfterBlock(block) => self.milliseconds(block).is_some_and(|ms| self.is_due(machine, ms)),
-        }
+        };
+        due.then_some(0)
     }
 
     /// Compared in the unit of the text, so that nothing is lost to rounding; nan is never due.
@@ -125,14 +129,18 @@ impl Engine {
         }
         if let Some(state) = self.active_state(machine) {
             self.note(Note::Exit(state));
-            self.run_all(plan.onexit(state));
+            self.run_all(plan, plan.onexit(state));
         }
     }
 
+    #[inline]
     pub(super) fn discard_nested(&mut self, machine: MachineId) {
-        if self.nested_count(machine) == 0 {
-            return;
+        if self.nested_count(machine) > 0 {
+            self.discard_all_nested(machine);
         }
+    }
+
+    fn discard_all_nested(&mut self, machine: MachineId) {
         let nested = self.running[machine.index()].as_mut().map(|running| std::mem::take(&mut running.nested));
         for machine in nested.unwrap_or_default() {
             self.discard(machine);
@@ -153,11 +161,10 @@ impl Engine {
         self.arrive(machine, state);
         for &item in plan.onentry(state) {
             match item {
-                EntryItem::Action(block) => self.run(block),
-                EntryItem::Spawn(index, Some((machine, start))) => {
+                EntryItem::Actions(actions) => self.run_all(plan, actions),
+                EntryItem::Spawn(index, (machine, start)) => {
                     self.spawn(plan, machine, start, Spawner::Entry { state, index });
                 }
-                EntryItem::Spawn(_, None) => {}
             }
         }
     }
@@ -227,7 +234,7 @@ impl Engine {
         if self.firing(plan, machine, state).is_some() {
             return;
         }
-        self.run_all(plan.running(state));
+        self.run_all(plan, plan.running(state));
         for index in 0..self.nested_count(machine) {
             self.settle(plan, self.nested(machine, index));
         }

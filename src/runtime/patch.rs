@@ -28,7 +28,7 @@ impl Engine {
             }
         }
         let still = self.faults.edited(self.now, |code, span| moved(&old, &new, code, span));
-        self.plan = Rc::new(Plan::of(&new));
+        self.plan = Rc::new(Plan::of(&new, &self.store));
         self.changes.follow(&new);
         self.program = Arc::new(new);
         let load = self.load_record(changes, reason.clone());

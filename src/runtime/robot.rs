@@ -72,6 +72,10 @@ impl Robots {
         });
     }
 
+    pub fn is_empty(&self) -> bool {
+        self.robots.is_empty()
+    }
+
     pub fn receive(&self, lua: &Lua, input: &Input, now: Time) {
         let Some(robot) = self.robots.iter().find(|robot| robot.name == input.bridge) else { return };
         if let Ok(message) = to_lua(lua.mlua(), &input.value) {

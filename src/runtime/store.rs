@@ -2,6 +2,7 @@
 //! doesn't concern them.
 
 use std::collections::{HashMap, VecDeque};
+use std::ops::Range;
 use std::sync::Arc;
 
 use crate::lua::{self, Cell, Lua, SyntaxError};
@@ -56,6 +57,18 @@ impl Store {
     pub fn ready(&self, block: BlockId) -> Option<lua::Block> {
         let compiled = &self.blocks[block.index()];
         compiled.lua.filter(|_| !compiled.stopped)
+    }
+
+    /// From `from` on, the next of the blocks to be run: all that are left, or one at a time while any block is stopped.
+    #[inline]
+    pub fn ready_part(&self, blocks: &[BlockId], from: usize) -> Range<usize> {
+        if self.any_stopped() { self.ready_one(blocks, from) } else { from..blocks.len() }
+    }
+
+    #[cold]
+    fn ready_one(&self, blocks: &[BlockId], from: usize) -> Range<usize> {
+        let next = (from..blocks.len()).find(|&index| self.ready(blocks[index]).is_some());
+        next.map_or(blocks.len()..blocks.len(), |index| index..index + 1)
     }
 
     pub fn stop(&mut self, block: BlockId) {

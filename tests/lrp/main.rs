@@ -7,6 +7,7 @@ mod editor;
 mod edits;
 mod frames;
 mod graph;
+mod isolation;
 mod keys;
 mod layers;
 mod lines;
