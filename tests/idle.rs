@@ -45,7 +45,7 @@ fn started(text: &str) -> Engine {
     let source = Source::new("idle.lrp", text);
     let parsed = parse(&source, FileId(0));
     assert!(parsed.diagnostics.is_empty(), "{:?}", parsed.diagnostics);
-    let program: Program = resolve(&parsed.tree, source, &[], &mut lrp::lua::Checker::new());
+    let program: Program = resolve(&parsed.tree, source, &[], &mut lrp::lua::Checker::default());
     assert!(program.findings.iter().all(|finding| !finding.is_error()), "{:?}", program.findings);
     let mut engine = Engine::new(Options::default());
     engine.command(Command::Load(Arc::new(program))).expect("it loads");

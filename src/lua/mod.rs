@@ -30,7 +30,7 @@ mod weight;
 use std::rc::Rc;
 use std::time::Duration;
 
-pub use facts::{Checker, Facts, NameUse, known_fields, known_names};
+pub use facts::{Checker, Facts, NameUse, SYSTEM, known_fields, known_names};
 pub use failure::{Failure, FailureKind};
 pub use guard::Emergency;
 pub use log::{Level, LogLine};

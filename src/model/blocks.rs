@@ -8,6 +8,7 @@ use crate::syntax::nearest::nearest;
 use crate::syntax::{Code, Diagnostic, Source, Span};
 
 pub fn resolve_blocks(program: &mut Program, checker: &mut Checker) {
+    let at_hand = checker.at_hand();
     let mut found = Vec::new();
     for index in 0..program.blocks.len() {
         let block = &program.blocks[index];
@@ -34,7 +35,7 @@ pub fn resolve_blocks(program: &mut Program, checker: &mut Checker) {
                 None if unknown.contains(&&*name.name) => {}
                 None => {
                     unknown.push(&name.name);
-                    found.extend(unknown_name(program, index, name, access));
+                    found.extend(unknown_name(program, index, name, access, &at_hand));
                 }
             }
         }
@@ -49,10 +50,16 @@ enum Access {
     Write,
 }
 
-fn unknown_name(program: &Program, block: usize, name: &NameUse, access: Access) -> Option<Diagnostic> {
+fn unknown_name(
+    program: &Program,
+    block: usize,
+    name: &NameUse,
+    access: Access,
+    at_hand: &[&str],
+) -> Option<Diagnostic> {
     let block = &program.blocks[block];
     let is_bridge = program.bridges.iter().any(|bridge| *bridge.name == *name.name);
-    let is_at_hand = lua::known_names().contains(&&*name.name);
+    let is_at_hand = at_hand.contains(&&*name.name);
     let span = place(program.source(block.span), block.span, name.line, Some((&name.name, Role::Name)));
     match access {
         Access::Read if is_bridge || is_at_hand => None,
@@ -64,13 +71,15 @@ fn unknown_name(program: &Program, block: usize, name: &NameUse, access: Access)
             let mut known: Vec<String> =
                 Names::of(program).vars(block.machine).iter().map(ToString::to_string).collect();
             known.extend(program.bridges.iter().map(|bridge| bridge.name.to_string()));
-            known.extend(lua::known_names().iter().map(ToString::to_string));
+            known.extend(at_hand.iter().map(ToString::to_string));
             let message = format!("`{}` is not a variable in scope here", name.name);
             let inside = program.vars.iter().find(|var| *var.name == *name.name);
+            let system = lua::SYSTEM.contains(&&*name.name);
             let help = match (inside, nearest(&name.name, known.iter().map(String::as_str))) {
                 (Some(var), _) => {
                     format!("`{}` is seen only in its machine: declare it further out to share it", var.path)
                 }
+                _ if system => format!("blocks can't reach files and processes; `--allow-system` lets them use `{}`", name.name),
                 (None, Some(near)) => format!("did you mean `{near}`?"),
                 (None, None) => {
                     format!("declare it with `(var {} := [..])`, or use `local` inside the block", name.name)

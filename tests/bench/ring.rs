@@ -88,7 +88,7 @@ fn compiled(text: &str) -> Program {
     let source = Source::new("ring.lrp", text);
     let parsed = parse(&source, FileId(0));
     assert!(parsed.diagnostics.is_empty(), "{:?}", parsed.diagnostics);
-    let program = resolve(&parsed.tree, source, &[], &mut lrp::lua::Checker::new());
+    let program = resolve(&parsed.tree, source, &[], &mut lrp::lua::Checker::default());
     assert!(program.findings.iter().all(|finding| !finding.is_error()), "{:?}", program.findings);
     program
 }

@@ -13,7 +13,7 @@ fn started(text: &str) -> Engine {
     let source = Source::new("isolation.lrp", text);
     let parsed = parse(&source, FileId(0));
     assert!(parsed.diagnostics.is_empty(), "{:?}", parsed.diagnostics);
-    let program = resolve(&parsed.tree, source, &[], &mut Checker::new());
+    let program = resolve(&parsed.tree, source, &[], &mut Checker::default());
     let limits = Limits { time: Duration::from_millis(20), ..Limits::default() };
     let mut engine = Engine::new(Options { limits, ..Options::default() });
     engine.command(Command::Load(Arc::new(program))).expect("it loads");
