@@ -67,13 +67,15 @@ impl Engine {
     pub(super) fn initialise(&mut self, var: VarId) {
         let block = self.program[var].init;
         let cell = self.store.cell(var);
-        self.changes.initialised(var);
         self.store.lua.clear(cell);
-        let Some(function) = self.prepare(block) else { return };
-        if matches!(self.store.lua.init(function, cell), Ran::Failed) {
-            self.failed(block);
+        if let Some(function) = self.prepare(block) {
+            if matches!(self.store.lua.init(function, cell), Ran::Failed) {
+                self.failed(block);
+            }
+            self.ran(block);
         }
-        self.ran(block);
+        self.store.lua.changed(cell);
+        self.report(var, "init".into());
     }
 
     fn prepare(&mut self, block: BlockId) -> Option<lua::Block> {

@@ -6,15 +6,10 @@ use crate::model::{BlockId, VarId};
 
 #[derive(Default)]
 pub(super) struct Changes {
-    initialised: Vec<VarId>,
     touched: Vec<BlockId>,
 }
 
 impl Changes {
-    pub fn initialised(&mut self, var: VarId) {
-        self.initialised.push(var);
-    }
-
     /// A block that uses variables has run.
     pub fn touched(&mut self, block: BlockId) {
         self.touched.push(block);
@@ -23,7 +18,6 @@ impl Changes {
 
 impl Engine {
     pub(super) fn report_changes(&mut self) {
-        self.report_initialised();
         let touched = std::mem::take(&mut self.changes.touched);
         for &block in &touched {
             for index in 0..self.program[block].uses.len() {
@@ -35,18 +29,6 @@ impl Engine {
         }
         self.changes.touched = touched;
         self.changes.touched.clear();
-    }
-
-    fn report_initialised(&mut self) {
-        let initialised = std::mem::take(&mut self.changes.initialised);
-        for &var in &initialised {
-            if self.is_alive(var) {
-                self.store.lua.changed(self.store.cell(var));
-                self.report(var, "init".into());
-            }
-        }
-        self.changes.initialised = initialised;
-        self.changes.initialised.clear();
     }
 
     pub(super) fn report(&mut self, var: VarId, by: std::sync::Arc<str>) {

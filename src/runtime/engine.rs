@@ -92,6 +92,11 @@ impl Engine {
         self.store.lua.library(Box::new(find));
     }
 
+    /// Reads a required Lua module anew when it is required next.
+    pub fn forget(&mut self, module: &str) {
+        self.store.lua.forget(module);
+    }
+
     /// For another thread, to learn of a block that nothing stops.
     pub fn emergency(&self) -> Emergency {
         self.store.lua.emergency()

@@ -169,6 +169,7 @@ pub enum Forced {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BridgeState {
     pub bridge: Path,
+    #[serde(rename = "type")]
     pub kind: Path,
     pub state: Health,
     /// What is wrong, when something is.

@@ -148,12 +148,17 @@ struct Status {
     late: Duration,
 }
 
+impl Status {
+    fn new() -> Status {
+        Status { since: Instant::now(), steps: 0, late: Duration::ZERO }
+    }
+}
+
 impl<'n, N: Fn(News)> Loop<'n, N> {
     fn new(driver: Driver, pacing: Pacing, stoppers: Arc<Mutex<Vec<Stopper>>>, news: &'n N) -> Self {
         let now = Instant::now();
-        let status = Status { since: now, steps: 0, late: Duration::ZERO };
         let pace = Pace::new(pacing.rate, Duration::ZERO);
-        Loop { driver, pacing, pace, stoppers, news, batch: Vec::new(), flushed: now, started: now, loaded: false, status }
+        Loop { driver, pacing, pace, stoppers, news, batch: Vec::new(), flushed: now, started: now, loaded: false, status: Status::new() }
     }
 
     fn run(&mut self, inbox: &Receiver<Message>) -> End {
@@ -209,12 +214,14 @@ impl<'n, N: Fn(News)> Loop<'n, N> {
         let real = self.started.elapsed();
         let loads = matches!(command, Command::Load(_));
         match &command {
-            Command::Rate { hz } => {
-                if let Some(rate) = Rate::new(*hz) {
-                    self.pace.set_rate(rate, real);
-                }
+            Command::Rate { hz } => match Rate::new(*hz) {
+                Some(rate) => self.pace.set_rate(rate, real),
+                None => return,
+            },
+            Command::Resume => {
+                self.pace.resume(real);
+                self.status = Status::new();
             }
-            Command::Resume => self.pace.resume(real),
             Command::Step if self.loaded && self.driver.engine().is_paused() => {
                 let _ = self.driver.command(command, &mut |record| self.batch.push(record));
                 let now = self.pace.make();
@@ -262,7 +269,7 @@ impl<'n, N: Fn(News)> Loop<'n, N> {
         let what = What::Status { rate: round(rate), late: round(self.status.late.as_secs_f64() * 1e3) };
         let batch = &mut self.batch;
         self.driver.say(what, &mut |record| batch.push(record));
-        self.status = Status { since: Instant::now(), steps: 0, late: Duration::ZERO };
+        self.status = Status::new();
     }
 
     fn flush(&mut self) {

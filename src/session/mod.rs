@@ -2,6 +2,7 @@
 
 pub mod compile;
 pub mod driver;
+pub mod edits;
 pub mod engine_thread;
 pub mod findings;
 pub mod headless;

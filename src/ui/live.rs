@@ -63,9 +63,15 @@ fn live(setup: Setup, trace: Option<PathBuf>) -> Result<ExitCode, String> {
     let input = Input::read(send(&happened, Happened::Terminal)).map_err(|error| error.to_string())?;
     let mut live = Live { app, screen, session, input, trace, happened, held: None, warned: false, failed: None };
     let code = live.run(&inbox);
-    let Live { screen, session, failed, .. } = live;
+    let Live { screen, session, failed, mut trace, .. } = live;
     drop(session);
     drop(screen);
+    // The robot's stop, and what came before it.
+    for happened in inbox.try_iter() {
+        if let (Happened::News(News::Records(records)), Some(trace)) = (happened, &mut trace) {
+            records.iter().for_each(|record| trace.record(record));
+        }
+    }
     match failed {
         Some(why) => Err(why),
         None => Ok(code),
@@ -150,6 +156,9 @@ impl Live {
             Happened::Signal(Signal::Continue) => Next::Go,
             Happened::News(News::Records(records)) => {
                 records.iter().for_each(|record| self.record(record));
+                if let Some(trace) = &mut self.trace {
+                    trace.flush();
+                }
                 Next::Go
             }
             Happened::News(News::Stuck) => {

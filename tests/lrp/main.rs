@@ -1,5 +1,7 @@
 //! All integration tests of the package, in one binary.
 
+mod behaviors;
+mod docs;
 mod editor;
 mod frames;
 mod graph;

@@ -1,7 +1,7 @@
 //! A test's program and its files, as the functions of `t` handle them. Knows no program until the test loads one.
 
 use std::cell::RefCell;
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
@@ -21,23 +21,25 @@ pub struct Api {
     bench: RefCell<Option<Bench>>,
     /// The loaded program's file.
     program: RefCell<Option<PathBuf>>,
-    files: Rc<Files>,
+    /// Texts that the test put in the place of files.
+    written: Written,
+    /// The program's records by kind, as the test sees them: each becomes a table only once.
+    pub told: RefCell<Vec<(String, mlua::Value)>>,
 }
 
-/// Lua files and programs as the test has them.
-#[derive(Default)]
-struct Files {
-    /// Texts that the test put in the place of files.
-    written: RefCell<HashMap<PathBuf, String>>,
-    /// Modules that the program has required.
-    required: RefCell<HashSet<PathBuf>>,
-}
+type Written = Rc<RefCell<HashMap<PathBuf, String>>>;
 
 impl Api {
     /// `folder`: the test file's, from which it names files.
     pub fn new(folder: &Path, deadline: Deadline) -> Api {
-        let (bench, program, files) = (RefCell::default(), RefCell::default(), Rc::default());
-        Api { folder: folder.to_path_buf(), deadline, bench, program, files }
+        Api {
+            folder: folder.to_path_buf(),
+            deadline,
+            bench: RefCell::default(),
+            program: RefCell::default(),
+            written: Rc::default(),
+            told: RefCell::default(),
+        }
     }
 
     /// The program under test, if there is one.
@@ -58,7 +60,7 @@ impl Api {
     /// Begins anew with the program of a file.
     pub fn load(&self, file: &str, options: Option<&Table>) -> Result<(), Complaint> {
         let path = self.folder.join(file);
-        let written = self.files.written.borrow().get(&path).cloned();
+        let written = self.written.borrow().get(&path).cloned();
         let source = match written {
             Some(text) => Source::new(path.display().to_string(), text),
             None => loader::read(&path).map_err(|why| Complaint::new(why.to_string()))?,
@@ -77,9 +79,9 @@ impl Api {
 
     fn start(&self, file: Source, folder: PathBuf, options: Option<&Table>) -> Result<(), Complaint> {
         self.bench.take();
-        self.files.required.take();
+        self.told.take();
         let options = Options::read(options)?;
-        let library = library(Rc::clone(&self.files), folder.clone());
+        let library = library(Rc::clone(&self.written), folder.clone());
         let setting = Setting { file, folder, test_folder: self.folder.clone(), library };
         *self.bench.borrow_mut() = Some(Bench::start(setting, &options, self.deadline.clone())?);
         Ok(())
@@ -88,13 +90,7 @@ impl Api {
     /// Puts a text in the place of a file: of the program, which is an edit of it, or of a Lua file that it will require.
     pub fn write(&self, file: &str, text: String) -> Result<(), Complaint> {
         let path = self.folder.join(file);
-        if self.files.required.borrow().contains(&path) {
-            let why = format!(
-                "`{file}` has been required already, and is read only once: write it before the program asks for it"
-            );
-            return Err(Complaint::new(why));
-        }
-        self.files.written.borrow_mut().insert(path.clone(), text.clone());
+        self.written.borrow_mut().insert(path.clone(), text.clone());
         match self.program.borrow().as_ref() == Some(&path) {
             true => self.with(|bench| bench.edit(text)),
             false => Ok(()),
@@ -102,15 +98,11 @@ impl Api {
     }
 }
 
-fn library(files: Rc<Files>, folder: PathBuf) -> Library {
-    let disk = modules::library(folder.clone());
+fn library(written: Written, folder: PathBuf) -> Library {
+    let disk = modules::library(folder.clone(), |_| ());
     Box::new(move |module| {
         let path = folder.join(module.replace('.', "/")).with_extension("lua");
-        let text = match files.written.borrow().get(&path) {
-            Some(text) => text.clone(),
-            None => disk(module)?,
-        };
-        files.required.borrow_mut().insert(path);
-        Ok(text)
+        let text = written.borrow().get(&path).cloned();
+        text.map_or_else(|| disk(module), Ok)
     })
 }

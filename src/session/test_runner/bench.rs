@@ -63,10 +63,11 @@ impl Bench {
     /// A program at time 0, with everything spawned.
     pub fn start(setting: Setting, options: &Options, deadline: Deadline) -> Result<Bench, Complaint> {
         let Setting { file, folder, test_folder, library } = setting;
-        let world = options
-            .world
-            .as_ref()
-            .map(|world| std::path::absolute(test_folder.join(world)).unwrap_or_else(|_| world.into()));
+        // The program names worlds as seen from its own folder.
+        let world = options.world.as_ref().map(|world| match folder == test_folder {
+            true => PathBuf::from(world),
+            false => std::path::absolute(test_folder.join(world)).unwrap_or_else(|_| world.into()),
+        });
         let mut compiler = Compiler::new(Vec::new());
         let mut program = compiler.compile(file.clone()).map_err(|rejected| broken(&rejected))?;
         if let Some(chosen) = &options.bridge

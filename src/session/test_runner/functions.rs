@@ -11,7 +11,7 @@ use super::failure::Complaint;
 use super::message::hint;
 use super::readable::sent;
 use super::value::{source, to_json, to_lua};
-use crate::runtime::{Command, Record, Time};
+use crate::runtime::{Command, Time};
 
 /// The table a test calls `t`.
 pub fn table(lua: &Lua, api: &Rc<Api>) -> mlua::Result<Table> {
@@ -70,7 +70,12 @@ impl Functions<'_> {
             if !matches!(arguments.pop_front(), Some(Value::Table(_))) {
                 return Err(Complaint::new(format!("call it with a colon: `t:{usage}`")).into());
             }
-            let wrong = |error: mlua::Error| Complaint::new(format!("it is called `t:{usage}`; {error}"));
+            let wrong = |error: mlua::Error| match error {
+                mlua::Error::FromLuaConversionError { from, .. } => {
+                    Complaint::new(format!("it is called `t:{usage}`, not with a {from}"))
+                }
+                other => Complaint::new(format!("it is called `t:{usage}`; {other}")),
+            };
             f(lua, &api, A::from_lua_multi(arguments, lua).map_err(wrong)?)
         })?;
         let name = usage.split('(').next().unwrap_or(usage);
@@ -139,18 +144,16 @@ impl Functions<'_> {
     }
 
     fn expecting(&self) -> mlua::Result<()> {
-        self.add(
-            "expect(condition, message)",
-            |_, _, (condition, message): (Value, Option<String>)| match condition {
-                Value::Nil | Value::Boolean(false) => {
-                    let message = message.unwrap_or_else(|| {
-                        format!("expected this, and it is {}", condition.to_string().unwrap_or_default())
-                    });
-                    Err(Complaint::new(message).into())
-                }
-                _ => Ok(()),
-            },
-        )?;
+        self.add("expect(condition, message)", |_, _, (condition, message): (Value, Value)| match condition {
+            Value::Nil | Value::Boolean(false) => {
+                let message = match message {
+                    Value::Nil => format!("expected this, and it is {}", condition.to_string()?),
+                    message => message.to_string()?,
+                };
+                Err(Complaint::new(message).into())
+            }
+            _ => Ok(()),
+        })?;
         self.add("expect_active(path)", |_, api, path: String| Ok(api.with(|bench| bench.expect_active(&path))?))?;
         self.add("expect_output(name, predicate)", |lua, api, (name, holds): (String, Option<Function>)| {
             for message in outputs(lua, api, &name)? {
@@ -218,9 +221,14 @@ fn records(lua: &Lua, api: &Api, kind: Option<&str>) -> mlua::Result<Vec<Value>>
             Complaint::new(format!("there are no records `{unknown}`; {}", hint(unknown, KINDS.into_iter()))).into()
         );
     }
-    let plain = |record: &Record| Some(json!(record)).filter(|record| kind.is_none_or(|kind| record["kind"] == kind));
-    let records: Vec<_> = api.with(|bench| Ok(bench.records().iter().filter_map(plain).collect()))?;
-    records.iter().map(|record| to_lua(lua, record)).collect()
+    let mut told = api.told.borrow_mut();
+    let new: Vec<_> =
+        api.with(|bench| Ok(bench.records()[told.len()..].iter().map(|record| json!(record)).collect()))?;
+    for record in new {
+        told.push((record["kind"].as_str().unwrap_or_default().to_string(), to_lua(lua, &record)?));
+    }
+    let wanted = told.iter().filter(|(known, _)| kind.is_none_or(|kind| kind == known));
+    Ok(wanted.map(|(_, record)| record.clone()).collect())
 }
 
 fn spelled_out(trouble: &Trouble) -> serde_json::Value {

@@ -61,7 +61,7 @@ impl TestLua {
 
     fn offer_require(&self) -> mlua::Result<()> {
         let loaded = self.lua.create_table()?;
-        let find = modules::library(self.folder.clone());
+        let find = modules::library(self.folder.clone(), |_| ());
         let require = self.lua.create_function(move |lua, name: String| {
             let known: Value = loaded.raw_get(&*name)?;
             if !known.is_nil() {
@@ -81,19 +81,19 @@ impl TestLua {
     }
 
     /// A test file's text as a function.
-    pub fn chunk(&self, file: &Path, text: &str) -> Result<Function, Failure> {
+    pub fn chunk(&self, file: &Path, text: &str) -> Result<Function, Box<Failure>> {
         let name = file.file_name().unwrap_or_default().to_string_lossy();
         let chunk = self.lua.load(text).set_name(format!("={name}")).set_mode(ChunkMode::Text);
         chunk.into_function().map_err(|error| self.failure(&error, Vec::new()))
     }
 
     /// Calls a function, or runs a file; what it raises becomes a failure with its place.
-    pub fn call(&self, function: Function, arguments: impl IntoLuaMulti) -> Result<(), Failure> {
+    pub fn call(&self, function: Function, arguments: impl IntoLuaMulti) -> Result<(), Box<Failure>> {
         self.deadline.restart();
         self.guarded(function, arguments).unwrap_or_else(|error| Err(self.failure(&error, Vec::new())))
     }
 
-    fn guarded(&self, function: Function, arguments: impl IntoLuaMulti) -> mlua::Result<Result<(), Failure>> {
+    fn guarded(&self, function: Function, arguments: impl IntoLuaMulti) -> mlua::Result<Result<(), Box<Failure>>> {
         self.watch()?;
         let places = Rc::new(std::cell::RefCell::new(Vec::new()));
         let (kept, folder) = (Rc::clone(&places), self.folder.clone());
@@ -123,16 +123,17 @@ impl TestLua {
         })
     }
 
-    fn raised(&self, error: Value, places: Vec<Place>) -> Failure {
+    fn raised(&self, error: Value, places: Vec<Place>) -> Box<Failure> {
         match error {
             Value::Error(error) => self.failure(&error, places),
-            other => self.said(&other.to_string().unwrap_or_else(|_| other.type_name().to_string()), places),
+            Value::String(text) => self.said(&text.to_string_lossy(), places),
+            other => self.said(&format!("an error was raised that is no text but a {}", other.type_name()), places),
         }
     }
 
-    fn failure(&self, error: &Error, places: Vec<Place>) -> Failure {
+    fn failure(&self, error: &Error, places: Vec<Place>) -> Box<Failure> {
         if let Some(complaint) = error.downcast_ref::<Complaint>() {
-            return Failure { places, line: None, complaint: complaint.clone(), situation: None };
+            return Box::new(Failure { places, line: None, complaint: complaint.clone(), situation: None });
         }
         match error {
             Error::CallbackError { cause, .. } => self.failure(cause, places),
@@ -142,7 +143,7 @@ impl TestLua {
     }
 
     /// Lua puts the place of an error before its text.
-    fn said(&self, message: &str, mut places: Vec<Place>) -> Failure {
+    fn said(&self, message: &str, mut places: Vec<Place>) -> Box<Failure> {
         let message = message.split("\nstack traceback:").next().unwrap_or(message);
         let mut text = message;
         if let Some((place, rest)) = position(message, &self.folder) {
@@ -150,7 +151,7 @@ impl TestLua {
             places.retain(|known| *known != place);
             places.insert(0, place);
         }
-        Failure { places, line: None, complaint: Complaint::new(text), situation: None }
+        Box::new(Failure { places, line: None, complaint: Complaint::new(text), situation: None })
     }
 }
 

@@ -139,6 +139,7 @@ fn command(command: &Command) -> String {
         Command::Set { var, value } => format!("set {var} to {value}"),
         Command::Restart => "restart".to_string(),
         Command::Runstop => "runstop".to_string(),
+        Command::FileChanged { file } => format!("file {file} changed"),
         Command::PutAtStart { bridge } => format!("put {bridge} at its start"),
     }
 }

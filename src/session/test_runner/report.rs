@@ -15,7 +15,7 @@ pub struct Outcome {
     pub took: Duration,
     /// What the test printed.
     pub printed: Vec<String>,
-    pub failure: Option<Failure>,
+    pub failure: Option<Box<Failure>>,
 }
 
 impl Outcome {

@@ -51,7 +51,7 @@ pub fn run(file: &Path, limit: Duration, mut on: impl FnMut(&Outcome)) -> Vec<Ou
 }
 
 impl Suite {
-    fn read(file: &Path, limit: Duration) -> Result<Suite, Failure> {
+    fn read(file: &Path, limit: Duration) -> Result<Suite, Box<Failure>> {
         let source = loader::read(file).map_err(|why| told(why.to_string()))?;
         let deadline = Deadline::new(limit);
         let lua = TestLua::new(&folder(file), deadline.clone()).map_err(|error| told(error.to_string()))?;
@@ -95,7 +95,7 @@ impl Suite {
         Outcome { file: self.file.clone(), name: Some(name), took: started.elapsed(), printed, failure }
     }
 
-    fn run(&self, body: Function) -> Result<(), Failure> {
+    fn run(&self, body: Function) -> Result<(), Box<Failure>> {
         let api = Rc::new(Api::new(&folder(&self.file), self.deadline.clone()));
         let t = functions::table(&self.lua.lua, &api).map_err(|error| told(error.to_string()))?;
         let failed = self.lua.call(body, t);
@@ -103,21 +103,22 @@ impl Suite {
         let nested = self.tests.take().pop();
         let nested = nested.map(|test| told(format!("the test `{}` is written inside another one", test.name)));
         failed.and(nested.map_or(Ok(()), Err)).map_err(|failure| {
-            let situation = api.look(|bench| bench.situation());
-            Failure { situation, ..self.quoting(failure) }
+            let mut failure = self.quoting(failure);
+            failure.situation = api.look(|bench| bench.situation());
+            failure
         })
     }
 
     /// With the line that failed, as it is written.
-    fn quoting(&self, failure: Failure) -> Failure {
+    fn quoting(&self, mut failure: Box<Failure>) -> Box<Failure> {
         let place = failure.places.first();
         let text = place.and_then(|place| Some((loader::read(&place.file).ok()?, place.line)));
-        let line = text.map(|(source, line)| source.text[source.line_range(line)].to_string());
-        Failure { line, ..failure }
+        failure.line = text.map(|(source, line)| source.text[source.line_range(line)].to_string());
+        failure
     }
 }
 
 /// A failure that has no line.
-fn told(message: String) -> Failure {
-    Failure { places: Vec::new(), line: None, complaint: Complaint::new(message), situation: None }
+fn told(message: String) -> Box<Failure> {
+    Box::new(Failure { places: Vec::new(), line: None, complaint: Complaint::new(message), situation: None })
 }

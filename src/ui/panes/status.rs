@@ -89,11 +89,12 @@ fn edit_words(app: &App, edit: &Edit) -> (String, Style) {
         Edit::Loaded => (String::new(), theme.dim()),
         Edit::Taken { changes, restarted: None } => (format!("saved: {changes}"), theme.normal()),
         Edit::Taken { changes, restarted: Some(_) } => (format!("restarted: {changes}"), theme.bold()),
-        Edit::Rejected { first: Some(first), others } => {
+        Edit::Mended => ("mended".into(), theme.normal()),
+        Edit::Rejected { first, .. } if first.line == 0 => (first.message.clone(), theme.stop()),
+        Edit::Rejected { first, others } => {
             let more = if *others > 0 { format!(" (+{others})") } else { String::new() };
             (format!("line {}: {}{more}", first.line, first.message), theme.stop())
         }
-        Edit::Rejected { first: None, .. } => ("not taken over".into(), theme.stop()),
     }
 }
 

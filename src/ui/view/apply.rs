@@ -43,7 +43,7 @@ impl View {
     }
 
     fn load(&mut self, load: &Load) {
-        let edit = if self.loads == 0 { Edit::Loaded } else { Edit::of_load(load) };
+        let edit = if self.loads == 0 { Edit::Loaded } else { Edit::of_load(load, self.edit.as_ref()) };
         self.loads += 1;
         if let Some(program) = &load.program {
             self.take_over(program);
@@ -262,10 +262,9 @@ fn note_of_edit(edit: &Edit) -> String {
         Edit::Loaded => "program loaded".into(),
         Edit::Taken { changes, restarted: None } => format!("saved: {changes}"),
         Edit::Taken { changes, restarted: Some(reason) } => format!("saved: {changes}; restarted: {reason}"),
-        Edit::Rejected { first: Some(first), .. } => {
-            format!("not taken over: line {}: {}", first.line, first.message)
-        }
-        Edit::Rejected { first: None, .. } => "not taken over".into(),
+        Edit::Mended => "mended: what runs is what the files say".into(),
+        Edit::Rejected { first, .. } if first.line == 0 => format!("{}: {}", first.file, first.message),
+        Edit::Rejected { first, .. } => format!("not taken over: line {}: {}", first.line, first.message),
     }
 }
 

@@ -1,0 +1,1 @@
+return { life = 42 }

@@ -1,0 +1,3 @@
+-- A file that tests nothing.
+
+local x = 1

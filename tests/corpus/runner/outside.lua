@@ -1,0 +1,7 @@
+-- A mistake outside any test.
+
+local function helper()
+  tset("misspelt", function() end)
+end
+
+helper()
