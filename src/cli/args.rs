@@ -39,19 +39,31 @@ pub enum Task {
     Run(RunArgs),
     /// Report what is wrong with programs; exit code 1 if any has errors
     Check {
-        #[arg(required = true)]
+        /// The programs
+        #[arg(required = true, value_name = "FILE")]
         files: Vec<PathBuf>,
+        /// For people or for tools
         #[arg(long, value_enum, default_value_t = Format::Text)]
         format: Format,
     },
     /// Run behaviour tests (`*_test.lua`) in virtual time; all below the current folder by default
-    Test { paths: Vec<PathBuf> },
+    Test {
+        /// Test files, or folders of them
+        #[arg(value_name = "PATH")]
+        paths: Vec<PathBuf>,
+    },
     /// Print the state graph of a machine
     Graph(GraphArgs),
     /// Make a first program NAME.lrp to edit
-    New { name: String },
+    New {
+        /// Of the file, which must not exist yet; .lrp is added
+        name: String,
+    },
     /// List the kinds of bridges, or what one offers
-    Bridges { kind: Option<String> },
+    Bridges {
+        /// The kind whose inputs and outputs to list
+        kind: Option<String>,
+    },
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -83,7 +95,7 @@ pub struct RunArgs {
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
     /// What an edit does to an active state that it changes: restart begins the program again
-    #[arg(long, value_enum, default_value_t = OnEdit::Restart)]
+    #[arg(long, value_name = "HOW", value_enum, default_value_t = OnEdit::Restart)]
     pub on_edit: OnEdit,
     /// How long a block may run before it is stopped, ms
     #[arg(long, value_name = "MS", default_value = "250", value_parser = clap::value_parser!(u64).range(1..=60_000))]
@@ -103,6 +115,7 @@ pub enum OnEdit {
 
 #[derive(clap::Args)]
 pub struct GraphArgs {
+    /// The program
     pub file: PathBuf,
     /// The path of the machine, such as follower/looking/lookalgo; the first one by default
     pub machine: Option<String>,
@@ -115,6 +128,7 @@ pub struct GraphArgs {
     /// Only ASCII characters
     #[arg(long, action = ArgAction::SetTrue)]
     pub ascii: bool,
+    /// A drawing in characters, or a text for Graphviz or Mermaid
     #[arg(long, value_enum, default_value_t = GraphFormat::Text)]
     pub format: GraphFormat,
 }

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use super::args::Format;
+use super::output::{complain, fail, finish};
 use crate::runtime::record::Finding;
 use crate::session::compile::{Compiler, Rejected};
 use crate::session::live::folder;
@@ -16,35 +17,51 @@ use crate::syntax::{Diagnostic, Source};
 pub fn check(files: &[PathBuf], format: Format) -> ExitCode {
     let mut failed = false;
     let mut listed: Vec<Finding> = Vec::new();
+    let mut text = String::new();
     for file in files {
         match diagnose(file) {
             Err(why) => {
-                eprintln!("lrp: {why}");
                 failed = true;
+                match format {
+                    Format::Text => complain(why),
+                    Format::Json => listed.push(unreadable(file, &why)),
+                }
             }
             Ok((sources, diagnostics)) => {
                 failed |= diagnostics.iter().any(Diagnostic::is_error);
                 match format {
-                    Format::Text => show(&diagnostics, &sources),
+                    Format::Text => text += &shown(&diagnostics, &sources),
                     Format::Json => listed.extend(findings::errors_first(&diagnostics, &sources)),
                 }
             }
         }
     }
     if let Format::Json = format {
-        println!("{}", serde_json::json!(listed));
+        text = format!("{}\n", serde_json::json!(listed));
     }
-    ExitCode::from(u8::from(failed))
+    finish(&text, ExitCode::from(u8::from(failed)))
 }
 
-fn show(diagnostics: &[Diagnostic], sources: &[Source]) {
+/// For tools: a file without a text has no place in it.
+fn unreadable(file: &Path, why: &loader::Unreadable) -> Finding {
+    Finding {
+        severity: "error".to_string(),
+        code: "file-unreadable".to_string(),
+        message: why.to_string(),
+        help: None,
+        file: file.display().to_string().into(),
+        line: 0,
+        column: 0,
+    }
+}
+
+fn shown(diagnostics: &[Diagnostic], sources: &[Source]) -> String {
     if diagnostics.is_empty() {
-        println!("{}: no problems found", sources[0].name);
-        return;
+        return format!("{}: no problems found\n", sources[0].name);
     }
     let coloured = stdout().is_terminal() && std::env::var_os("NO_COLOR").is_none();
     let style = if coloured { Style::Colour } else { Style::Plain };
-    print!("{}", render(diagnostics, sources, style));
+    render(diagnostics, sources, style)
 }
 
 /// Everything found in a program, in its texts, in its worlds.
@@ -67,21 +84,18 @@ pub fn diagnose(file: &Path) -> Result<(Vec<Source>, Vec<Diagnostic>), loader::U
 
 pub fn bridges(kind: Option<&str>) -> ExitCode {
     let Some(kind) = kind else {
-        for kind in robots::KINDS {
-            println!("{kind:10} built in    {}", robots::summary(kind));
-        }
-        return ExitCode::SUCCESS;
+        let lines = robots::KINDS.iter().map(|kind| format!("{kind:10} built in    {}\n", robots::summary(kind)));
+        return finish(&lines.collect::<String>(), ExitCode::SUCCESS);
     };
     let Some(description) = robots::offer(kind) else {
-        eprintln!("lrp: there is no bridge of kind `{kind}`; there is: {}", robots::KINDS.join(", "));
-        return ExitCode::FAILURE;
+        return fail(format_args!("there is no bridge of kind `{kind}`; there is: {}", robots::KINDS.join(", ")));
     };
-    println!("{kind}: {}", robots::summary(kind));
+    let mut text = format!("{kind}: {}\n", robots::summary(kind));
     for (title, ports) in [("inputs", &description.inputs), ("outputs", &description.outputs)] {
-        println!("\n{title}");
+        text += &format!("\n{title}\n");
         for port in ports {
-            println!("  {:10} {}\n  {:10} {}", port.name, port.doc, "", port.message);
+            text += &format!("  {:10} {}\n  {:10} {}\n", port.name, port.doc, "", port.message);
         }
     }
-    ExitCode::SUCCESS
+    finish(&text, ExitCode::SUCCESS)
 }

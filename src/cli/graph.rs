@@ -1,8 +1,10 @@
 //! `lrp graph`: the drawing of a machine on standard output.
 
+use std::io::{self, Write};
 use std::process::ExitCode;
 
 use super::args::{GraphArgs, GraphFormat};
+use super::output::{fail, finish};
 use crate::model::{MachineId, Program};
 use crate::session::compile::{Compiler, Rejected};
 use crate::session::loader;
@@ -13,23 +15,28 @@ use crate::ui::machine_graph;
 
 pub fn print(args: &GraphArgs) -> ExitCode {
     match drawing(args) {
-        Ok(text) => {
-            println!("{}", text.trim_end());
-            ExitCode::SUCCESS
-        }
-        Err(why) => {
-            eprintln!("{}", why.trim_end());
+        Ok(text) => finish(&format!("{}\n", text.trim_end()), ExitCode::SUCCESS),
+        Err(Failure::Said(why)) => fail(why),
+        Err(Failure::Diagnosed(text)) => {
+            // Diagnostics go where errors go: the drawing was asked for.
+            let _ = io::stderr().write_all(text.as_bytes());
             ExitCode::FAILURE
         }
     }
 }
 
-fn drawing(args: &GraphArgs) -> Result<String, String> {
-    let source = loader::read(&args.file).map_err(|why| format!("lrp: {why}"))?;
+/// Why there is no drawing.
+enum Failure {
+    Said(String),
+    Diagnosed(String),
+}
+
+fn drawing(args: &GraphArgs) -> Result<String, Failure> {
+    let source = loader::read(&args.file).map_err(|why| Failure::Said(why.to_string()))?;
     let program = Compiler::new(Vec::new())
         .compile(source)
-        .map_err(|Rejected { sources, diagnostics }| render(&diagnostics, &sources, Style::Plain))?;
-    let machine = chosen(&program, args.machine.as_deref())?;
+        .map_err(|Rejected { sources, diagnostics }| Failure::Diagnosed(render(&diagnostics, &sources, Style::Plain)))?;
+    let machine = chosen(&program, args.machine.as_deref()).map_err(Failure::Said)?;
     Ok(match args.format {
         GraphFormat::Text => text(&program, machine, args),
         GraphFormat::Dot => dot(&machine_graph::nested(&program, machine)),
@@ -39,13 +46,13 @@ fn drawing(args: &GraphArgs) -> Result<String, String> {
 
 fn chosen(program: &Program, path: Option<&str>) -> Result<MachineId, String> {
     let Some(path) = path else {
-        return program.tops.first().copied().ok_or_else(|| "lrp: this program has no machine".to_string());
+        return program.tops.first().copied().ok_or_else(|| "this program has no machine".to_string());
     };
     program.machine(path).ok_or_else(|| {
         let known: Vec<&str> = program.machines.iter().map(|machine| &*machine.path).collect();
         let near = nearest(path, known.iter().copied());
         let help = near.map_or_else(|| format!("there is: {}", known.join(", ")), |near| format!("did you mean `{near}`?"));
-        format!("lrp: there is no machine `{path}`; {help}")
+        format!("there is no machine `{path}`; {help}")
     })
 }
 

@@ -4,15 +4,21 @@ mod args;
 mod check;
 mod graph;
 mod new;
+mod output;
 
 use std::process::ExitCode;
 
-use clap::Parser;
+use clap::error::ErrorKind;
+use clap::{CommandFactory, Parser};
 
+use crate::syntax::nearest::nearest;
 use args::{Args, Task};
 
 pub fn main() -> ExitCode {
-    let args = Args::parse();
+    let args = match Args::try_parse() {
+        Ok(args) => args,
+        Err(error) => return wrong(&error),
+    };
     match args.task() {
         Task::Live(run) => crate::ui::live::run(run.setup(), run.trace),
         Task::Run(run) => crate::session::headless::run(run.setup(), run.trace),
@@ -22,4 +28,20 @@ pub fn main() -> ExitCode {
         Task::Test { paths } => crate::session::test_runner::run(&paths),
         Task::Bridges { kind } => check::bridges(kind.as_deref()),
     }
+}
+
+/// Help that was asked for, or what is wrong with the arguments. A misspelt command looks like a file with too much after it.
+fn wrong(error: &clap::Error) -> ExitCode {
+    let first = std::env::args().nth(1).unwrap_or_default();
+    let commands = Args::command();
+    match nearest(&first, commands.get_subcommands().map(clap::Command::get_name)) {
+        Some(near) if error.kind() == ErrorKind::ArgumentConflict => {
+            output::complain(format_args!("there is no command `{first}`; did you mean `{near}`?"));
+        }
+        _ => {
+            // Where nobody listens there is nothing to say.
+            let _ = error.print();
+        }
+    }
+    ExitCode::from(error.exit_code() as u8)
 }

@@ -4,6 +4,8 @@ use std::fs::OpenOptions;
 use std::io::{ErrorKind, Write};
 use std::process::ExitCode;
 
+use super::output::{fail, finish};
+
 const TEMPLATE: &str = include_str!("new.lrp");
 
 pub fn create(name: &str) -> ExitCode {
@@ -11,16 +13,10 @@ pub fn create(name: &str) -> ExitCode {
     let created = OpenOptions::new().write(true).create_new(true).open(&file).and_then(|mut out| out.write_all(TEMPLATE.as_bytes()));
     match created {
         Ok(()) => {
-            println!("{file} is made. Run it with `lrp {file}` and edit it in another window: every save counts at once.");
-            ExitCode::SUCCESS
+            let text = format!("{file} is made. Run it with `lrp {file}` and edit it in another window: every save counts at once.\n");
+            finish(&text, ExitCode::SUCCESS)
         }
-        Err(error) if error.kind() == ErrorKind::AlreadyExists => {
-            eprintln!("lrp: {file} exists already; choose another name");
-            ExitCode::FAILURE
-        }
-        Err(error) => {
-            eprintln!("lrp: {file} can't be made: {error}");
-            ExitCode::FAILURE
-        }
+        Err(error) if error.kind() == ErrorKind::AlreadyExists => fail(format_args!("{file} exists already; choose another name")),
+        Err(error) => fail(format_args!("{file} can't be made: {error}")),
     }
 }

@@ -276,23 +276,35 @@ fn unlink(guard: &Arc<Guard>) {
     }
 }
 
+/// The longest time between two signals about one call.
+const PATIENCE: Duration = Duration::from_secs(1);
+
 fn watch(guard: &Guard) {
     let pause = (guard.limit / 10).clamp(Duration::from_millis(1), Duration::from_millis(25));
     let mut seen = (0, Instant::now());
+    // When the call is signalled next, since it was first seen, and how long after that again.
+    let (mut due, mut gap) = (guard.limit, pause);
     while !guard.done.load(SeqCst) {
         std::thread::park_timeout(pause);
         let call = guard.call.load(SeqCst);
+        let elapsed = seen.1.elapsed();
         if call != seen.0 {
             seen = (call, Instant::now());
+            (due, gap) = (guard.limit, pause);
             guard.overdue.store(0, SeqCst);
         } else if !call.is_multiple_of(2)
-            && let Some(over) = seen.1.elapsed().checked_sub(guard.limit)
+            && let Some(over) = elapsed.checked_sub(guard.limit)
         {
             guard.overdue.store(over.as_micros().max(1) as u64, SeqCst);
             guard.target.store(call, SeqCst);
+            if elapsed < due {
+                continue;
+            }
             // SAFETY: the thread lives: it owns the interpreter, and waits for this one before it lets go of it.
-            // Sent again until the call ends: a coroutine may have begun just then.
+            // Sent again until the call ends: a coroutine may have begun just then. But ever more rarely: in a deep recursion
+            // the handler takes long, and the call must get on between two of them to end.
             unsafe { libc::pthread_kill(guard.thread, signal()) };
+            (due, gap) = (elapsed + gap, (gap * 2).min(PATIENCE));
         }
     }
 }

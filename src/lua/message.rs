@@ -22,11 +22,19 @@ fn position(text: &str) -> Option<(Spot, usize)> {
 pub(super) fn relocate(text: &str, desk: &Desk) -> String {
     let mut result = String::with_capacity(text.len());
     let mut rest = text;
+    let mut last = None;
     while let Some(at) = rest.find(MARK) {
         result.push_str(&rest[..at]);
+        // Each wrapped coroutine that an error passes says where it is: in a recursion always the same.
+        let again = at <= 1 && rest[..at].trim().is_empty();
         rest = &rest[at..];
         let length = match position(rest) {
+            Some((spot, length)) if again && last == Some(spot) => {
+                result.truncate(result.trim_end().len());
+                length
+            }
             Some((spot, length)) => {
+                last = Some(spot);
                 let (file, line) = desk.place(spot.chunk, spot.line).unwrap_or(("block".to_owned(), spot.line));
                 result.push_str(&format!("{file}:{line}:"));
                 length

@@ -1,5 +1,6 @@
 //! The thread that owns the engine: paces it by the clock, takes commands between steps, passes records on in batches.
 
+use std::ops::Deref;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, TryRecvError, channel};
 use std::sync::{Arc, Mutex};
@@ -21,9 +22,23 @@ pub struct Pacing {
     pub until: Option<Time>,
 }
 
+/// Records that came together. The thread that steps as fast as it can waits for those who take them.
+pub struct Batch {
+    records: Vec<Record>,
+    _pending: Arc<()>,
+}
+
+impl Deref for Batch {
+    type Target = [Record];
+
+    fn deref(&self) -> &[Record] {
+        &self.records
+    }
+}
+
 /// What comes out of the thread.
 pub enum News {
-    Records(Vec<Record>),
+    Records(Batch),
     /// A block can't be stopped: the engine waits for it, the robots were halted.
     Stuck,
     /// The run is over, or the engine can't go on.
@@ -68,9 +83,15 @@ impl Commands {
 pub struct EngineThread {
     commands: Commands,
     thread: Option<JoinHandle<()>>,
+    /// Closed when the thread has ended.
+    ended: Receiver<()>,
 }
 
 const BATCH: Duration = Duration::from_millis(10);
+/// Batches that may wait to be taken before the next step as fast as possible.
+const PENDING: usize = 32;
+/// How long the thread may take to end, once the robots are halted. A block that can't be stopped would take for ever.
+const END: Duration = Duration::from_secs(2);
 const STATUS: Duration = Duration::from_millis(500);
 
 /// Gives a required Lua module's text, or why there is none.
@@ -81,7 +102,9 @@ impl EngineThread {
         let (messages, inbox) = channel();
         let stoppers: Arc<Mutex<Vec<Stopper>>> = Arc::default();
         let shared = Arc::clone(&stoppers);
+        let (alive, ended) = channel();
         let body = move || {
+            let _alive: Sender<()> = alive;
             let run = AssertUnwindSafe(|| {
                 let mut driver = Driver::new(options, workshop);
                 driver.engine_mut().library(library);
@@ -99,7 +122,7 @@ impl EngineThread {
             news(News::Ended(end));
         };
         let thread = std::thread::Builder::new().name("engine".to_string()).spawn(body).expect("a thread can be started");
-        EngineThread { commands: Commands { messages, stoppers }, thread: Some(thread) }
+        EngineThread { commands: Commands { messages, stoppers }, thread: Some(thread), ended }
     }
 
     pub fn commands(&self) -> &Commands {
@@ -111,7 +134,9 @@ impl Drop for EngineThread {
     fn drop(&mut self) {
         self.commands.halt();
         let _ = self.commands.messages.send(Message::End);
-        if let Some(thread) = self.thread.take() {
+        if self.ended.recv_timeout(END) == Err(RecvTimeoutError::Disconnected)
+            && let Some(thread) = self.thread.take()
+        {
             let _ = thread.join();
         }
     }
@@ -136,6 +161,7 @@ struct Loop<'n, N: Fn(News)> {
     stoppers: Arc<Mutex<Vec<Stopper>>>,
     news: &'n N,
     batch: Vec<Record>,
+    pending: Arc<()>,
     flushed: Instant,
     started: Instant,
     loaded: bool,
@@ -158,7 +184,7 @@ impl<'n, N: Fn(News)> Loop<'n, N> {
     fn new(driver: Driver, pacing: Pacing, stoppers: Arc<Mutex<Vec<Stopper>>>, news: &'n N) -> Self {
         let now = Instant::now();
         let pace = Pace::new(pacing.rate, Duration::ZERO);
-        Loop { driver, pacing, pace, stoppers, news, batch: Vec::new(), flushed: now, started: now, loaded: false, status: Status::new() }
+        Loop { driver, pacing, pace, stoppers, news, batch: Vec::new(), pending: Arc::default(), flushed: now, started: now, loaded: false, status: Status::new() }
     }
 
     fn run(&mut self, inbox: &Receiver<Message>) -> End {
@@ -187,6 +213,7 @@ impl<'n, N: Fn(News)> Loop<'n, N> {
     fn next(&mut self, inbox: &Receiver<Message>) -> Next {
         let wait = match (self.runs(), self.pacing.clock) {
             (false, _) => STATUS,
+            (true, _) if self.is_ahead() => BATCH,
             (true, Clock::Virtual) => Duration::ZERO,
             (true, Clock::Real) => self.pace.wait(self.started.elapsed()),
         };
@@ -200,10 +227,16 @@ impl<'n, N: Fn(News)> Loop<'n, N> {
         self.flush();
         match inbox.recv_timeout(wait) {
             Ok(message) => Next::Message(message),
-            Err(RecvTimeoutError::Timeout) if self.runs() => Next::Step,
+            Err(RecvTimeoutError::Timeout) if self.runs() && !self.is_ahead() => Next::Step,
             Err(RecvTimeoutError::Timeout) => Next::Nothing,
             Err(RecvTimeoutError::Disconnected) => Next::Message(Message::End),
         }
+    }
+
+    /// Whether it makes records faster than they are taken. Only real time waits for nobody.
+    fn is_ahead(&self) -> bool {
+        let hurries = self.pacing.clock == Clock::Virtual || self.pace.rate().hz() == 0.0;
+        hurries && Arc::strong_count(&self.pending) > PENDING
     }
 
     fn runs(&self) -> bool {
@@ -274,7 +307,8 @@ impl<'n, N: Fn(News)> Loop<'n, N> {
 
     fn flush(&mut self) {
         if !self.batch.is_empty() {
-            (self.news)(News::Records(std::mem::take(&mut self.batch)));
+            let (records, pending) = (std::mem::take(&mut self.batch), Arc::clone(&self.pending));
+            (self.news)(News::Records(Batch { records, _pending: pending }));
         }
         self.flushed = Instant::now();
     }

@@ -9,7 +9,7 @@ use super::engine_thread::{End, News};
 use super::live::{Session, Setup};
 use super::signals::{self, Signal, Signals};
 use super::trace::Trace;
-use crate::runtime::record::{Level, Load};
+use crate::runtime::record::{Finding, Level, Load};
 use crate::runtime::{Record, What};
 
 enum Event {
@@ -89,6 +89,9 @@ impl Run {
         }
         if let Some(trace) = &mut self.trace {
             trace.flush();
+            if let Some(why) = trace.trouble() {
+                say(&format!("lrp: {why}"));
+            }
         }
     }
 
@@ -102,7 +105,7 @@ impl Run {
 pub const STUCK: &str = "a block can't be stopped; the robot was halted, and the program waits for that block";
 
 fn fail(why: &str) -> ExitCode {
-    eprintln!("lrp: {why}");
+    say(&format!("lrp: {why}"));
     ExitCode::FAILURE
 }
 
@@ -119,15 +122,14 @@ impl Outcome {
         match &record.what {
             What::Load(load) => self.loaded(load),
             What::Reject { findings } => {
-                for finding in findings {
-                    say(&format!("{}:{}:{}: {}: {}", finding.file, finding.line, finding.column, finding.severity, finding.message));
-                }
+                findings.iter().for_each(tell);
                 self.errors |= !self.loaded;
                 self.refused = !self.loaded;
             }
             What::Error(fault) if fault.count == 1 => {
                 self.errors = true;
-                say(&format!("{}:{}:{}: error: {}", fault.file, fault.line, fault.column, fault.message));
+                let place = format!("{}:{}:{}", fault.file, fault.line, fault.column);
+                say(&with_help(format!("{place}: error: {}", fault.message), fault.help.as_deref()));
             }
             What::Log(log) if log.level >= Level::Info => say(&format!("{}: {}", level(log.level), log.message)),
             _ => {}
@@ -138,6 +140,7 @@ impl Outcome {
         if let (true, Some(reason)) = (self.loaded, &load.reason) {
             say(&format!("restarted: {reason}"));
         }
+        load.findings.iter().filter(|finding| finding.severity == "warning").for_each(tell);
         self.loaded = true;
     }
 }
@@ -151,7 +154,33 @@ fn level(level: Level) -> &'static str {
     }
 }
 
-/// To standard error, which may be gone.
+/// A finding that concerns a whole file has no line.
+fn tell(finding: &Finding) {
+    let Finding { severity, message, help, file, line, column, .. } = finding;
+    let line = match line {
+        0 => format!("{file}: {severity}: {message}"),
+        line => format!("{file}:{line}:{column}: {severity}: {message}"),
+    };
+    say(&with_help(line, help.as_deref()));
+}
+
+fn with_help(line: String, help: Option<&str>) -> String {
+    match help {
+        Some(help) => format!("{line}; {help}"),
+        None => line,
+    }
+}
+
+/// To standard error, which may be gone. A terminal there obeys nothing that a robot or a program wrote.
 fn say(line: &str) {
-    let _ = writeln!(io::stderr(), "{line}");
+    let mut text = String::with_capacity(line.len() + 1);
+    for c in line.chars() {
+        match c {
+            '\n' | '\t' => text.push(c),
+            c if c.is_control() => text.extend(c.escape_default()),
+            c => text.push(c),
+        }
+    }
+    text.push('\n');
+    let _ = io::stderr().write_all(text.as_bytes());
 }

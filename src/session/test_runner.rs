@@ -31,7 +31,7 @@ pub fn run(paths: &[PathBuf]) -> ExitCode {
     let files = match test_files(paths) {
         Ok(files) => files,
         Err(why) => {
-            eprintln!("lrp: {why}");
+            let _ = writeln!(io::stderr(), "lrp: {why}");
             return ExitCode::FAILURE;
         }
     };

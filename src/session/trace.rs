@@ -16,6 +16,8 @@ pub struct Trace {
     /// Until the header is written.
     conditions: Option<Conditions>,
     state: State,
+    /// Why it ends early, until told.
+    trouble: Option<String>,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -60,7 +62,7 @@ impl Trace {
             Some("-") => Box::new(BufWriter::new(io::stdout())),
             _ => Box::new(BufWriter::new(File::create(path)?)),
         };
-        Ok(Trace { out, path: path.to_path_buf(), conditions: Some(conditions), state: State::Open })
+        Ok(Trace { out, path: path.to_path_buf(), conditions: Some(conditions), state: State::Open, trouble: None })
     }
 
     fn header(&mut self, conditions: &Conditions, files: &[record::File]) {
@@ -104,9 +106,14 @@ impl Trace {
             Err(error) if error.kind() == io::ErrorKind::BrokenPipe => self.state = State::Unread,
             Err(error) => {
                 self.state = State::Failed;
-                eprintln!("lrp: the trace {} ends here: {error}", self.path.display());
+                self.trouble = Some(format!("the trace {} ends here: {error}", self.path.display()));
             }
         }
+    }
+
+    /// Why it couldn't be written to its end; once.
+    pub fn trouble(&mut self) -> Option<String> {
+        self.trouble.take()
     }
 
     /// Whether whoever read it has gone.

@@ -1,7 +1,7 @@
 //! `lrp FILE`: the screen on a running program. One loop takes what comes from keys, the engine and the system, lets the
 //! app answer, and draws when something changed.
 
-use std::io;
+use std::io::{self, Write};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
@@ -38,7 +38,7 @@ pub fn run(setup: Setup, trace: Option<PathBuf>) -> ExitCode {
     match live(setup, trace) {
         Ok(code) => code,
         Err(why) => {
-            eprintln!("lrp: {why}");
+            let _ = writeln!(io::stderr(), "lrp: {why}");
             ExitCode::FAILURE
         }
     }
@@ -46,6 +46,9 @@ pub fn run(setup: Setup, trace: Option<PathBuf>) -> ExitCode {
 
 fn live(setup: Setup, trace: Option<PathBuf>) -> Result<ExitCode, String> {
     Screen::check().map_err(|error| error.to_string())?;
+    if trace.as_deref() == Some(Path::new("-")) {
+        return Err("the screen needs standard output for itself: name a file for --trace, or use `lrp run`".to_string());
+    }
     let trace = trace.as_deref().map(|path| Trace::create(path, setup.conditions())).transpose();
     let trace = trace.map_err(|error| format!("the trace can't be written: {error}"))?;
     let app = |size| {
@@ -156,9 +159,7 @@ impl Live {
             Happened::Signal(Signal::Continue) => Next::Go,
             Happened::News(News::Records(records)) => {
                 records.iter().for_each(|record| self.record(record));
-                if let Some(trace) = &mut self.trace {
-                    trace.flush();
-                }
+                self.flush();
                 Next::Go
             }
             Happened::News(News::Stuck) => {
@@ -179,6 +180,15 @@ impl Live {
         self.app.record(record);
         if let Some(trace) = &mut self.trace {
             trace.record(record);
+        }
+    }
+
+    fn flush(&mut self) {
+        if let Some(trace) = &mut self.trace {
+            trace.flush();
+            if let Some(why) = trace.trouble() {
+                self.app.notice(why);
+            }
         }
     }
 

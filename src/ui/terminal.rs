@@ -46,7 +46,7 @@ impl Screen {
     pub fn check() -> io::Result<()> {
         if !io::stdin().is_terminal() || !io::stdout().is_terminal() {
             return Err(io::Error::other(
-                "lrp needs a terminal for its screen; `lrp run` works without one",
+                "there is no terminal for the screen; `lrp run` works without one",
             ));
         }
         Ok(())

@@ -41,7 +41,7 @@ fn a_screen_needs_a_terminal() {
     let said = fs::read_to_string(journal).unwrap();
     assert_eq!(
         said,
-        "lrp needs a terminal for its screen; `lrp run` works without one\n"
+        "there is no terminal for the screen; `lrp run` works without one\n"
     );
 }
 

@@ -100,10 +100,6 @@ fn problem(span: Span, message: String) -> Problems {
     Problems { sources: Vec::new(), diagnostics: vec![Diagnostic::error(Code::BadBridge, span, message)] }
 }
 
-fn read_text(path: &Path) -> Result<String, String> {
-    std::fs::read_to_string(path).map_err(|error| error.to_string())
-}
-
 /// The files that a robot reads.
 pub fn files(bridge: &model::Bridge, folder: &Path) -> Vec<std::path::PathBuf> {
     match &*bridge.kind {

@@ -7,9 +7,10 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use lrp_sim::{Noise, Sim, Twist, World};
 use serde_json::{Value, json};
 
-use super::{Bridge, Concern, Problems, Stopper, problem, read_text};
+use super::{Bridge, Concern, Problems, Stopper, problem};
 use crate::model::description::{Description, Port, Scope};
 use crate::model;
+use crate::session::loader;
 use crate::runtime::Time;
 use crate::runtime::record::{BridgeState, Health, WorldText};
 use crate::syntax::{Code, Diagnostic, FileId, Source, Span};
@@ -129,8 +130,7 @@ pub fn world_file(bridge: &model::Bridge, folder: &Path) -> Option<PathBuf> {
 }
 
 fn read_world(bridge: &model::Bridge, file: &Path) -> Result<Source, Problems> {
-    let unreadable = |error| problem(bridge.span, format!("the world `{}` can't be read: {error}", file.display()));
-    Ok(Source::new(file.display().to_string(), read_text(file).map_err(unreadable)?))
+    loader::read(file).map_err(|why| problem(bridge.span, format!("the world can't be read: {why}")))
 }
 
 fn broken_world(world: &Source, file: FileId, faults: &[lrp_sim::Fault]) -> Problems {
