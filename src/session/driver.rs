@@ -75,7 +75,10 @@ impl Driver {
     }
 
     pub fn command(&mut self, command: Command, sink: Sink) -> Result<(), Refused> {
-        let held = matches!(command, Command::Load(_) | Command::Restart | Command::TransitionTo { .. } | Command::JumpTo { .. });
+        let held = matches!(
+            command,
+            Command::Load(_) | Command::Restart | Command::TransitionTo { .. } | Command::JumpTo { .. }
+        );
         let delivery = if held && self.engine.is_paused() { Delivery::Held } else { Delivery::Now };
         let result = match command {
             Command::Load(program) => self.load(Arc::unwrap_or_clone(program)),
