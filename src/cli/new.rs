@@ -18,7 +18,8 @@ pub fn create(name: &str) -> ExitCode {
     match created {
         Ok(()) => {
             let text = format!(
-                "{file} is made. Run it with `lrp {file}` and edit it in another window: every save counts at once.\n"
+                "{file} is made. Run it with `lrp {}` and edit it in another window: every save counts at once.\n",
+                quoted(&file)
             );
             finish(&text, ExitCode::SUCCESS)
         }
@@ -27,4 +28,10 @@ pub fn create(name: &str) -> ExitCode {
         }
         Err(error) => fail(format_args!("{file} can't be made: {error}")),
     }
+}
+
+/// As a shell would want it.
+fn quoted(file: &str) -> String {
+    let is_plain = file.chars().all(|c| c.is_alphanumeric() || "._-/".contains(c));
+    if is_plain { file.to_string() } else { format!("'{}'", file.replace('\'', r"'\''")) }
 }
