@@ -96,7 +96,7 @@ impl Engine {
     pub fn step(&mut self, now: Time, inputs: &[Input]) {
         self.step += 1;
         self.now = now;
-        self.store.lua.now(now.ms());
+        self.store.lua.now(now.0);
         for input in inputs {
             self.receive(input);
         }
