@@ -22,8 +22,11 @@ pub fn resolve_blocks(program: &mut Program, checker: &mut Checker) {
         let names = Names::of(program);
         let mut uses = Vec::new();
         let mut unknown: Vec<&str> = Vec::new();
-        for (name, access) in
-            facts.reads.iter().map(|name| (name, Access::Read)).chain(facts.writes.iter().map(|name| (name, Access::Write)))
+        for (name, access) in facts
+            .reads
+            .iter()
+            .map(|name| (name, Access::Read))
+            .chain(facts.writes.iter().map(|name| (name, Access::Write)))
         {
             match names.var(block.machine, &name.name) {
                 Some(var) if !uses.contains(&var) => uses.push(var),
@@ -58,13 +61,20 @@ fn unknown_name(program: &Program, block: usize, name: &NameUse, access: Access)
             Some(Diagnostic::error(Code::UnknownVariable, span, message).help("declare a variable of another name"))
         }
         _ => {
-            let mut known: Vec<String> = Names::of(program).vars(block.machine).iter().map(ToString::to_string).collect();
+            let mut known: Vec<String> =
+                Names::of(program).vars(block.machine).iter().map(ToString::to_string).collect();
             known.extend(program.bridges.iter().map(|bridge| bridge.name.to_string()));
             known.extend(lua::known_names().iter().map(ToString::to_string));
             let message = format!("`{}` is not a variable in scope here", name.name);
-            let help = match nearest(&name.name, known.iter().map(String::as_str)) {
-                Some(near) => format!("did you mean `{near}`?"),
-                None => format!("declare it with `(var {} := [..])`, or use `local` inside the block", name.name),
+            let inside = program.vars.iter().find(|var| *var.name == *name.name);
+            let help = match (inside, nearest(&name.name, known.iter().map(String::as_str))) {
+                (Some(var), _) => {
+                    format!("`{}` is seen only in its machine: declare it further out to share it", var.path)
+                }
+                (None, Some(near)) => format!("did you mean `{near}`?"),
+                (None, None) => {
+                    format!("declare it with `(var {} := [..])`, or use `local` inside the block", name.name)
+                }
             };
             Some(Diagnostic::error(Code::UnknownVariable, span, message).help(help))
         }
@@ -93,7 +103,35 @@ fn explained(source: &Source, block: Span, span: Span, error: &lua::SyntaxError)
         let message = format!("this looks like Smalltalk; blocks are Lua: {message}");
         return Diagnostic::error(Code::Smalltalk, span, message).help(help);
     }
-    Diagnostic::error(Code::LuaSyntax, span, message)
+    if let Some(letter) = source.slice(span).chars().next().filter(|letter| !letter.is_ascii()) {
+        let message = format!("`{letter}` can stand in a string or a comment only");
+        return Diagnostic::error(Code::LuaSyntax, span, message)
+            .help("names are made of the letters a to z, digits and `_`");
+    }
+    let diagnostic = Diagnostic::error(Code::LuaSyntax, span, message);
+    match foreign(source.slice(block), near) {
+        Some(help) => diagnostic.help(help),
+        None => diagnostic,
+    }
+}
+
+/// What to write in Lua for an operator of other languages.
+fn foreign(code: &str, near: usize) -> Option<&'static str> {
+    const OPERATORS: [(&str, &str); 8] = [
+        ("+=", "Lua has no `+=`: write `x = x + 1`"),
+        ("-=", "Lua has no `-=`: write `x = x - 1`"),
+        ("*=", "Lua has no `*=`: write `x = x * 2`"),
+        ("++", "Lua has no `++`: write `x = x + 1`"),
+        ("!=", "in Lua it is written `~=`"),
+        ("!", "in Lua it is written `not`"),
+        ("&&", "in Lua it is written `and`"),
+        ("||", "in Lua it is written `or`"),
+    ];
+    let is_near = |operator: &str| {
+        let from = near.saturating_sub(operator.len() - 1);
+        (from..=near).any(|at| code.get(at..).is_some_and(|here| here.starts_with(operator)))
+    };
+    OPERATORS.iter().find(|(operator, _)| is_near(operator)).map(|&(_, help)| help)
 }
 
 /// Lua tells the line and the token, which may stand there more than once: the one meant is the first up to which the
@@ -102,6 +140,13 @@ fn error_span(source: &Source, block: &Block, error: &lua::SyntaxError, checker:
     let offset = block.span.start as usize;
     let first = source.line(offset);
     let in_line = |at: usize| source.line(offset + at) == first + error.line.max(1) as usize - 1;
+    let is_letter = error.token.as_deref().is_some_and(|token| token.starts_with("<\\"));
+    if is_letter
+        && let Some(letter) =
+            tokens(&block.code).find(|token| token.kind == TokenKind::Unknown && in_line(token.range.start))
+    {
+        return Span::new(block.span.file, offset + letter.range.start, offset + letter.range.end);
+    }
     let candidates = tokens(&block.code)
         .map(|token| token.range)
         .filter(|range| in_line(range.start) && Some(&block.code[range.clone()]) == error.token.as_deref());
@@ -115,7 +160,8 @@ fn error_span(source: &Source, block: &Block, error: &lua::SyntaxError, checker:
 
 /// What to write in Lua, where a block that doesn't compile has the marks of Smalltalk.
 fn smalltalk(code: &str, near: usize) -> Option<&'static str> {
-    let ends_with_not = code.trim_end().ends_with(" not") || code.get(near..).is_some_and(|here| here.starts_with("not"));
+    let ends_with_not =
+        code.trim_end().ends_with(" not") || code.get(near..).is_some_and(|here| here.starts_with("not"));
     if code.contains(":=") {
         Some("in Lua a variable is assigned with `=`: `x = x + 1`")
     } else if code.contains("[:") {

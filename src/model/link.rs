@@ -7,7 +7,11 @@ use super::names::Names;
 use super::program::*;
 use super::resolve::Resolver;
 use crate::syntax::ast::{self, MachineItem, StateItem};
+use crate::syntax::nearest::nearest;
 use crate::syntax::{Code, Diagnostic};
+
+/// Names listed at most where none is near to the one that was meant.
+const LISTED: usize = 8;
 
 impl Resolver<'_> {
     pub(super) fn link(&mut self) {
@@ -62,10 +66,14 @@ impl Resolver<'_> {
             state.map(|state| (machine, state))
         });
         if machine.is_none() {
-            let known = Names::of(&self.program).machines(by);
-            self.unknown(Code::UnknownMachine, "machine", &spawn.machine, known.iter().map(|name| &**name));
+            self.unknown_machine(spawn, by);
         }
-        Spawn { machine_name: spawn.machine.text.clone(), state_name: spawn.state.text.clone(), target, span: spawn.span }
+        Spawn {
+            machine_name: spawn.machine.text.clone(),
+            state_name: spawn.state.text.clone(),
+            target,
+            span: spawn.span,
+        }
     }
 
     fn link_transition(&mut self, tree: &ast::Transition, machine: MachineId) {
@@ -99,8 +107,10 @@ impl Resolver<'_> {
                 None => {
                     let name = &self.program[machine].name;
                     let message = format!("`exit` leaves a nested machine, but `{name}` is not nested in a state");
-                    self.diagnostics
-                        .push(Diagnostic::error(Code::ExitAtTop, tree.span, message).help("use `on` to go to a state of the same machine"));
+                    self.diagnostics.push(
+                        Diagnostic::error(Code::ExitAtTop, tree.span, message)
+                            .help("use `on` to go to a state of the same machine"),
+                    );
                     return None;
                 }
             },
@@ -109,8 +119,36 @@ impl Resolver<'_> {
         let target = self.program.state_named(owner, &tree.target.text);
         if target.is_none() {
             self.unknown_state(owner, &tree.target);
+            if kind == TransitionKind::Exit && self.program.state_named(machine, &tree.target.text).is_some() {
+                self.help_last(format!(
+                    "an exit goes to a state of `{}`; `on` goes to one of `{}`",
+                    self.name(owner),
+                    self.name(machine)
+                ));
+            }
         }
         target
+    }
+
+    fn name(&self, machine: MachineId) -> &str {
+        &self.program[machine].name
+    }
+
+    fn help_last(&mut self, help: String) {
+        if let Some(last) = self.diagnostics.last_mut() {
+            last.help = Some(help);
+        }
+    }
+
+    fn unknown_machine(&mut self, spawn: &ast::Spawn, by: Option<StateId>) {
+        let Some(elsewhere) = self.program.machines.iter().find(|machine| machine.name == spawn.machine.text) else {
+            let known = Names::of(&self.program).machines(by);
+            return self.unknown(Code::UnknownMachine, "machine", &spawn.machine, known.iter().map(|name| &**name));
+        };
+        let message = format!("machine `{}` can't be spawned here: it is written in another state", spawn.machine.text);
+        let help = "a spawn may name the machines of its own state, of the states around it, and those at top level";
+        let diagnostic = Diagnostic::error(Code::UnknownMachine, spawn.machine.span, message);
+        self.diagnostics.push(diagnostic.also(elsewhere.name_span, "written here").help(help));
     }
 
     /// Where a transition can be taken, it joins the lists that a step walks.
@@ -127,7 +165,8 @@ impl Resolver<'_> {
             }
             return;
         }
-        let states: Vec<StateId> = self.program[machine].states.iter().copied().filter(|&state| transition.leaves(state)).collect();
+        let states: Vec<StateId> =
+            self.program[machine].states.iter().copied().filter(|&state| transition.leaves(state)).collect();
         for state in states {
             self.program.states[state.index()].outgoing.push(id);
         }
@@ -185,12 +224,22 @@ impl Resolver<'_> {
         self.unknown(Code::UnknownState, &what, name, known.iter().map(|name| &**name));
     }
 
-    pub(super) fn unknown<'a>(&mut self, code: Code, what: &str, name: &ast::Name, known: impl IntoIterator<Item = &'a str>) {
-        let message = format!("`{}` is not a {what}", name.text).replace("a event", "an event");
-        let mut diagnostic = Diagnostic::error(code, name.span, message);
-        if let Some(near) = crate::syntax::nearest::nearest(&name.text, known) {
-            diagnostic = diagnostic.help(format!("did you mean `{near}`?"));
-        }
-        self.diagnostics.push(diagnostic);
+    pub(super) fn unknown<'a>(
+        &mut self,
+        code: Code,
+        what: &str,
+        name: &ast::Name,
+        known: impl IntoIterator<Item = &'a str>,
+    ) {
+        let known: Vec<&str> = known.into_iter().collect();
+        let help = match nearest(&name.text, known.iter().copied()) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None if known.is_empty() => "there is none here yet".to_string(),
+            None if known.len() <= LISTED => format!("there is: {}", known.join(", ")),
+            None => format!("there is: {}, and {} more", known[..LISTED].join(", "), known.len() - LISTED),
+        };
+        let article = if what.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
+        let message = format!("`{}` is not {article} {what}", name.text);
+        self.diagnostics.push(Diagnostic::error(code, name.span, message).help(help));
     }
 }

@@ -19,7 +19,8 @@ pub struct Robot {
 }
 
 pub fn resolve(tree: &Tree, source: Source, robots: &[Robot], checker: &mut Checker) -> Program {
-    let mut resolver = Resolver { program: Program { sources: vec![source], ..Program::default() }, ..Resolver::default() };
+    let mut resolver =
+        Resolver { program: Program { sources: vec![source], ..Program::default() }, ..Resolver::default() };
     resolver.declare(tree);
     resolver.bridges(tree, robots, checker);
     resolver.link();
@@ -105,7 +106,9 @@ impl<'t> Resolver<'t> {
                 let first = self.program[first].span;
                 let message = format!("a second `{name}`; only the first one is used");
                 self.diagnostics.push(
-                    Diagnostic::error(Code::Duplicate, block.span, message).also(first, "the first one").help("put both into one block"),
+                    Diagnostic::error(Code::Duplicate, block.span, message)
+                        .also(first, "the first one")
+                        .help("put both into one block"),
                 );
             }
         }
@@ -253,7 +256,9 @@ impl<'t> Resolver<'t> {
     fn duplicate(&mut self, what: &str, name: &ast::Name, first: Span) {
         let message = format!("{what} `{}` is declared twice; this declaration is ignored", name.text);
         self.diagnostics.push(
-            Diagnostic::error(Code::Duplicate, name.span, message).also(first, "first declared here").help("rename or remove one of them"),
+            Diagnostic::error(Code::Duplicate, name.span, message)
+                .also(first, "first declared here")
+                .help("rename or remove one of them"),
         );
     }
 
@@ -281,7 +286,12 @@ impl<'t> Resolver<'t> {
 
     fn config(&mut self, bridge: &ast::Bridge, checker: &mut Checker) -> serde_json::Value {
         let Some(block) = &bridge.config else { return serde_json::json!({}) };
-        checker.config(&block.text).unwrap_or_else(|error| {
+        checker.config(&block.text).unwrap_or_else(|mut error| {
+            // The bracket that Lua sees at the end is not in the text.
+            if !block.text.contains('}') {
+                error.message = error.message.replace("near '}'", "near ']'");
+                error.token = error.token.filter(|token| token != "}");
+            }
             let source = &self.program.sources[block.span.file.0 as usize];
             self.diagnostics.push(super::blocks::syntax_diagnostic(source, block.span, &error));
             serde_json::json!({})

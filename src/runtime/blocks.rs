@@ -84,13 +84,15 @@ impl Engine {
     pub(super) fn initialise(&mut self, var: VarId) {
         let block = self.program[var].init;
         let cell = self.store.cell(var);
-        self.changes.initialised(var);
         self.store.lua.clear(cell);
-        let Some(function) = self.prepare(block) else { return };
-        if matches!(self.store.lua.init(function, cell), Ran::Failed) {
-            self.failed(block);
+        if let Some(function) = self.prepare(block) {
+            if matches!(self.store.lua.init(function, cell), Ran::Failed) {
+                self.failed(block);
+            }
+            self.ran(block);
         }
-        self.ran(block);
+        self.store.lua.changed(cell);
+        self.report(var, "init".into());
     }
 
     /// As its scope starts anew: a block that ran too long gets another chance.
@@ -163,23 +165,34 @@ impl Engine {
         }
         let (code, help) = match failure.kind {
             FailureKind::Runtime => (Code::Runtime, None),
-            FailureKind::OverTime => (Code::OverTime, Some("it is not run again until it is edited or its state is entered anew")),
-            FailureKind::OverMemory => (Code::OverMemory, Some("it is not run again until it is edited or its state is entered anew")),
+            FailureKind::OverTime => {
+                (Code::OverTime, Some("it is not run again until it is edited or its state is entered anew"))
+            }
+            FailureKind::OverMemory => {
+                (Code::OverMemory, Some("it is not run again until it is edited or its state is entered anew"))
+            }
         };
         if code != Code::Runtime {
             self.store.stop(block);
         }
         let span = self.failure_span(block, &failure);
-        match self.found_before(span).filter(|_| code == Code::Runtime) {
-            Some(found) => self.block_fault(block, found.code, span, found.message, found.help),
+        match self.found_before(block, &failure) {
+            Some(found) => self.block_fault(block, found.code, found.span, found.message, found.help),
             None => self.block_fault(block, code, span, failure.message, help.map(str::to_string)),
         }
     }
 
     /// An unknown name was reported when the program was read: it is the same fault, and now it has happened.
-    fn found_before(&self, span: Span) -> Option<Diagnostic> {
-        let mut findings = self.program.findings.iter();
-        findings.find(|finding| finding.code == Code::UnknownVariable && finding.span == span).cloned()
+    fn found_before(&self, block: BlockId, failure: &Failure) -> Option<Diagnostic> {
+        let name = failure.message.strip_prefix("there is no variable or function '")?.split('\'').next()?;
+        let within = self.program[block].span;
+        let is_it = |finding: &&Diagnostic| {
+            let Span { file, start, end } = finding.span;
+            finding.code == Code::UnknownVariable
+                && (file, start >= within.start, end <= within.end) == (within.file, true, true)
+                && self.program.source(within).slice(finding.span) == name
+        };
+        self.program.findings.iter().find(is_it).cloned()
     }
 
     fn failure_span(&self, block: BlockId, failure: &Failure) -> Span {
@@ -189,7 +202,7 @@ impl Engine {
         place(self.program.source(span), span, failure.line, failure.token.as_deref().map(|token| (token, role)))
     }
 
-    /// Not a mistake: the robot has not spoken yet. Said once for each input.
+    /// Not a mistake: the robot has not spoken, or not lately. Said once for each input.
     fn waiting_for_message(&mut self, block: BlockId, failure: &Failure, missing: super::robot::NoMessage) {
         // Before the first step nothing can have come.
         if self.step == 0 || !self.robots.is_news(&missing) {
@@ -198,8 +211,15 @@ impl Engine {
         let span = self.failure_span(block, failure);
         let source = self.program.source(span);
         let line = source.line(span.start as usize);
-        let message = format!("`{}.{}` has had no message yet; what needs it is skipped until one comes", missing.bridge, missing.input);
-        let log = Log { level: super::record::Level::Info, message, state: self.program.owner_path(block), file: source.name.clone(), line };
+        let super::robot::NoMessage { bridge, input, why } = &missing;
+        let message = format!("`{bridge}.{input}` {why}; what needs it is skipped until one comes");
+        let log = Log {
+            level: super::record::Level::Info,
+            message,
+            state: self.program.owner_path(block),
+            file: source.name.clone(),
+            line,
+        };
         self.rare(What::Log(log));
     }
 
@@ -207,7 +227,9 @@ impl Engine {
     fn not_boolean(&mut self, block: BlockId, kind: &str) {
         let span = self.program[block].span;
         let (what, help) = match self.program[block].owner {
-            Owner::Event(event) => (format!("event `{}`", self.program[event].name), "compare with something: `x > 0`, `x ~= nil`"),
+            Owner::Event(event) => {
+                (format!("event `{}`", self.program[event].name), "compare with something: `x > 0`, `x ~= nil`")
+            }
             _ => ("this trigger".to_string(), "compare with something: `x > 0`, `x ~= nil`"),
         };
         let message = format!("{what} gives {kind}, not true or false; it doesn't occur");
@@ -216,7 +238,8 @@ impl Engine {
 
     pub(super) fn not_milliseconds(&mut self, transition: TransitionId, var: VarId) {
         let program = Arc::clone(&self.program);
-        let message = format!("timeout `{}` is not a number of milliseconds; the transition is not taken", program[var].name);
+        let message =
+            format!("timeout `{}` is not a number of milliseconds; the transition is not taken", program[var].name);
         let state = program[program[transition].machine].path.clone();
         self.fault(Code::NotMilliseconds, program[transition].span, message, None, state);
     }

@@ -8,7 +8,6 @@ use crate::model::{BlockId, Owner, Program, VarId};
 
 #[derive(Default)]
 pub(super) struct Changes {
-    initialised: Vec<VarId>,
     touched: Vec<BlockId>,
     /// Groups that what was touched belongs to; kept for its memory.
     reached: Vec<usize>,
@@ -16,10 +15,6 @@ pub(super) struct Changes {
 }
 
 impl Changes {
-    pub fn initialised(&mut self, var: VarId) {
-        self.initialised.push(var);
-    }
-
     /// A block that uses variables has run.
     pub fn touched(&mut self, block: BlockId) {
         self.touched.push(block);
@@ -66,13 +61,12 @@ impl Reach {
 impl Engine {
     #[inline]
     pub(super) fn report_changes(&mut self) {
-        if !self.changes.touched.is_empty() || !self.changes.initialised.is_empty() {
+        if !self.changes.touched.is_empty() {
             self.compare();
         }
     }
 
     fn compare(&mut self) {
-        self.report_initialised();
         let touched = std::mem::take(&mut self.changes.touched);
         for &block in &touched {
             for index in 0..self.program[block].uses.len() {
@@ -110,23 +104,12 @@ impl Engine {
     /// The last block that ran and assigns a variable; else the last that uses it; else the last of all.
     fn changed_by(&self, var: VarId, touched: &[BlockId]) -> Arc<str> {
         let cell = self.store.cell(var);
-        let assigns = |block: BlockId| self.store.block(block).lua.is_some_and(|lua| self.store.lua.writes(lua).contains(&cell));
+        let assigns =
+            |block: BlockId| self.store.block(block).lua.is_some_and(|lua| self.store.lua.writes(lua).contains(&cell));
         let newest = || touched.iter().rev().copied();
         let block = newest().find(|&block| assigns(block));
         let block = block.or_else(|| newest().find(|&block| self.program[block].uses.contains(&var)));
         block.or_else(|| newest().next()).map(|block| self.program.owner_path(block)).unwrap_or_default()
-    }
-
-    fn report_initialised(&mut self) {
-        let initialised = std::mem::take(&mut self.changes.initialised);
-        for &var in &initialised {
-            if self.is_alive(var) {
-                self.store.lua.changed(self.store.cell(var));
-                self.report(var, "init".into());
-            }
-        }
-        self.changes.initialised = initialised;
-        self.changes.initialised.clear();
     }
 
     pub(super) fn report(&mut self, var: VarId, by: Arc<str>) {

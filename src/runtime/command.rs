@@ -31,6 +31,8 @@ pub enum Command {
     Restart,
     /// Stops the robot and pauses. The session has told the bridges before the engine sees it.
     Runstop,
+    /// A file beside the program has another text: a world, or a Lua file that a block requires.
+    FileChanged { file: String },
     /// Puts a simulated robot back at its start.
     PutAtStart { bridge: String },
 }

@@ -12,7 +12,7 @@ use super::record::{Change, Load, Record, What};
 use super::robot::Robots;
 use super::store::Store;
 use super::time::Time;
-use crate::lua::{Access, Limits, Lua};
+use crate::lua::{Access, Emergency, Limits, Lua};
 use crate::model::*;
 
 #[derive(Clone, Debug)]
@@ -90,6 +90,16 @@ impl Engine {
     /// Where the text of a `require`d Lua module comes from.
     pub fn library(&mut self, find: impl Fn(&str) -> Result<String, String> + 'static) {
         self.store.lua.library(Box::new(find));
+    }
+
+    /// Reads a required Lua module anew when it is required next.
+    pub fn forget(&mut self, module: &str) {
+        self.store.lua.forget(module);
+    }
+
+    /// For another thread, to learn of a block that nothing stops.
+    pub fn emergency(&self) -> Emergency {
+        self.store.lua.emergency()
     }
 
     /// One step of every machine, at a program time not before that of the last one.

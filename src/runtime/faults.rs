@@ -100,4 +100,7 @@ impl Faults {
         self.known.iter().map(|entry| entry.fault.clone()).collect()
     }
 
+    pub fn reported(&self) -> impl Iterator<Item = Fault> + '_ {
+        self.known.iter().map(|entry| Fault { count: entry.reported, ..entry.fault.clone() })
+    }
 }

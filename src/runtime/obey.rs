@@ -47,7 +47,7 @@ impl Engine {
             Command::TransitionTo { state } => self.force(self.state_called(&state)?, Forced::Transition),
             Command::JumpTo { state } => self.force(self.state_called(&state)?, Forced::Jump),
             Command::Set { var, value } => self.set(&var, &value)?,
-            Command::Step | Command::Rate { .. } | Command::PutAtStart { .. } => {}
+            Command::Step | Command::Rate { .. } | Command::PutAtStart { .. } | Command::FileChanged { .. } => {}
         }
         Ok(())
     }

@@ -169,6 +169,8 @@ pub enum Forced {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BridgeState {
     pub bridge: Path,
+    /// `kind` is what the record is.
+    #[serde(rename = "type")]
     pub kind: Path,
     pub state: Health,
     /// What is wrong, when something is.

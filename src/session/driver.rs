@@ -1,11 +1,14 @@
 //! The engine with its robots: samples what they say, steps, hands over what they are told. Has no clock and no thread:
 //! whoever owns one says when a step is due.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use serde_json::Value;
 
-use super::robots::{Bridge, Problems, Stopper, Workshop};
+use super::findings::errors_first;
+use super::modules;
+use super::robots::{Bridge, Concern, Problems, Stopper, Workshop};
 use crate::model::{self, Description, Program};
 use crate::runtime::record::{BridgeState, Health};
 use crate::runtime::{Command, Engine, Input, Options, Record, Refused, Time, What};
@@ -80,6 +83,10 @@ impl Driver {
                 self.put_at_start(bridge);
                 self.engine.command(command)
             }
+            Command::FileChanged { ref file } => {
+                self.file_changed(Path::new(file));
+                self.engine.command(command)
+            }
             Command::Runstop => {
                 self.stop_all();
                 self.held.clear();
@@ -108,6 +115,25 @@ impl Driver {
     pub fn say(&mut self, what: What, sink: Sink) {
         self.engine.say(what);
         self.hand_over(Delivery::Now, sink);
+    }
+
+    fn file_changed(&mut self, file: &Path) {
+        for bridge in self.robots.iter_mut().filter_map(|robot| robot.bridge.as_mut()) {
+            match bridge.file_changed(file) {
+                Ok(Concern::None) => {}
+                Ok(Concern::TakenOver) => {
+                    self.engine.say(What::Reject { findings: Vec::new() });
+                    self.engine.say(What::Bridge(bridge.state()));
+                }
+                Err(Problems { sources, diagnostics }) => {
+                    let sources = if sources.is_empty() { self.engine.program().sources.clone() } else { sources };
+                    self.engine.say(What::Reject { findings: errors_first(&diagnostics, &sources) });
+                }
+            }
+        }
+        if let Some(module) = modules::name(&self.workshop.folder, file) {
+            self.engine.forget(&module);
+        }
     }
 
     fn stop_all(&mut self) {

@@ -10,6 +10,7 @@ use super::driver::Driver;
 use super::pace::{Due, Pace, Rate};
 use super::robots::{Stopper, Workshop};
 use super::trace::Clock;
+use super::warden::Warden;
 use crate::runtime::{Command, Options, Record, Time, What};
 
 #[derive(Clone, Debug)]
@@ -23,6 +24,8 @@ pub struct Pacing {
 /// What comes out of the thread.
 pub enum News {
     Records(Vec<Record>),
+    /// A block can't be stopped: the engine waits for it, the robots were halted.
+    Stuck,
     /// The run is over, or the engine can't go on.
     Ended(End),
 }
@@ -74,7 +77,7 @@ const STATUS: Duration = Duration::from_millis(500);
 pub type Library = Box<dyn Fn(&str) -> Result<String, String> + Send>;
 
 impl EngineThread {
-    pub fn start(options: Options, workshop: Workshop, library: Library, pacing: Pacing, news: impl Fn(News) + Send + 'static) -> Self {
+    pub fn start(options: Options, workshop: Workshop, library: Library, pacing: Pacing, news: impl Fn(News) + Clone + Send + 'static) -> Self {
         let (messages, inbox) = channel();
         let stoppers: Arc<Mutex<Vec<Stopper>>> = Arc::default();
         let shared = Arc::clone(&stoppers);
@@ -82,6 +85,11 @@ impl EngineThread {
             let run = AssertUnwindSafe(|| {
                 let mut driver = Driver::new(options, workshop);
                 driver.engine_mut().library(library);
+                let (stoppers, tell) = (Arc::clone(&shared), news.clone());
+                let _warden = Warden::watch(driver.engine().emergency(), move || {
+                    halt(&stoppers);
+                    tell(News::Stuck);
+                });
                 Loop::new(driver, pacing, Arc::clone(&shared), &news).run(&inbox)
             });
             let end = catch_unwind(run).unwrap_or_else(|panic| {
@@ -140,12 +148,17 @@ struct Status {
     late: Duration,
 }
 
+impl Status {
+    fn new() -> Status {
+        Status { since: Instant::now(), steps: 0, late: Duration::ZERO }
+    }
+}
+
 impl<'n, N: Fn(News)> Loop<'n, N> {
     fn new(driver: Driver, pacing: Pacing, stoppers: Arc<Mutex<Vec<Stopper>>>, news: &'n N) -> Self {
         let now = Instant::now();
-        let status = Status { since: now, steps: 0, late: Duration::ZERO };
         let pace = Pace::new(pacing.rate, Duration::ZERO);
-        Loop { driver, pacing, pace, stoppers, news, batch: Vec::new(), flushed: now, started: now, loaded: false, status }
+        Loop { driver, pacing, pace, stoppers, news, batch: Vec::new(), flushed: now, started: now, loaded: false, status: Status::new() }
     }
 
     fn run(&mut self, inbox: &Receiver<Message>) -> End {
@@ -201,15 +214,17 @@ impl<'n, N: Fn(News)> Loop<'n, N> {
         let real = self.started.elapsed();
         let loads = matches!(command, Command::Load(_));
         match &command {
-            Command::Rate { hz } => {
-                if let Some(rate) = Rate::new(*hz) {
-                    self.pace.set_rate(rate, real);
-                }
+            Command::Rate { hz } => match Rate::new(*hz) {
+                Some(rate) => self.pace.set_rate(rate, real),
+                None => return,
+            },
+            Command::Resume => {
+                self.pace.resume(real);
+                self.status = Status::new();
             }
-            Command::Resume => self.pace.resume(real),
             Command::Step if self.loaded && self.driver.engine().is_paused() => {
                 let _ = self.driver.command(command, &mut |record| self.batch.push(record));
-                let now = self.pace.next();
+                let now = self.pace.make();
                 self.driver.step(now, &mut |record| self.batch.push(record));
                 return;
             }
@@ -228,7 +243,7 @@ impl<'n, N: Fn(News)> Loop<'n, N> {
     /// Whether the run is over.
     fn step(&mut self) -> bool {
         let due = match self.pacing.clock {
-            Clock::Virtual => Due { now: self.pace.next(), skipped: 0, late: Duration::ZERO },
+            Clock::Virtual => Due { now: self.pace.make(), skipped: 0, late: Duration::ZERO },
             Clock::Real => self.pace.take(self.started.elapsed()),
         };
         if self.pacing.until.is_some_and(|until| due.now > until) {
@@ -254,7 +269,7 @@ impl<'n, N: Fn(News)> Loop<'n, N> {
         let what = What::Status { rate: round(rate), late: round(self.status.late.as_secs_f64() * 1e3) };
         let batch = &mut self.batch;
         self.driver.say(what, &mut |record| batch.push(record));
-        self.status = Status { since: Instant::now(), steps: 0, late: Duration::ZERO };
+        self.status = Status::new();
     }
 
     fn flush(&mut self) {

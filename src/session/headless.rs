@@ -3,11 +3,11 @@
 use std::io::{self, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::sync::mpsc::{Sender, channel};
+use std::sync::mpsc::{Receiver, Sender, channel};
 
 use super::engine_thread::{End, News};
 use super::live::{Session, Setup};
-use super::signals::{Signal, Signals};
+use super::signals::{self, Signal, Signals};
 use super::trace::Trace;
 use crate::runtime::record::{Level, Load};
 use crate::runtime::{Record, What};
@@ -19,7 +19,7 @@ enum Event {
 
 /// Exit code 0: fine; 1: errors; 130: interrupted.
 pub fn run(setup: Setup, trace: Option<PathBuf>) -> ExitCode {
-    let mut trace = match trace.as_deref().map(|path| Trace::create(path, setup.conditions())).transpose() {
+    let trace = match trace.as_deref().map(|path| Trace::create(path, setup.conditions())).transpose() {
         Ok(trace) => trace,
         Err(error) => return fail(&format!("the trace can't be written: {error}")),
     };
@@ -30,40 +30,76 @@ pub fn run(setup: Setup, trace: Option<PathBuf>) -> ExitCode {
         Ok(session) => session,
         Err(why) => return fail(&why.to_string()),
     };
-    let mut outcome = Outcome::default();
-    while let Ok(event) = inbox.recv() {
-        match event {
-            Event::News(News::Records(records)) => {
-                for record in &records {
-                    outcome.see(record);
-                    if let Some(trace) = &mut trace {
-                        trace.record(record);
-                    }
-                }
-                if let Some(trace) = &mut trace {
-                    trace.flush();
-                }
-                let nobody_reads = trace.as_ref().is_some_and(Trace::is_broken);
-                if outcome.refused || nobody_reads {
-                    break;
-                }
-            }
-            Event::News(News::Ended(End::Failed(why))) => return fail(&format!("lrp failed and stopped the robot: {why}")),
-            Event::News(News::Ended(_)) => break,
-            Event::Signal(Signal::Interrupt) => {
-                drop(session);
-                return ExitCode::from(130);
-            }
-            Event::Signal(Signal::Terminate | Signal::HangUp) => {
-                drop(session);
-                return ExitCode::SUCCESS;
-            }
-            Event::Signal(Signal::Suspend) => session.commands().halt(),
-            Event::Signal(Signal::Continue) => {}
+    let mut run = Run { trace, outcome: Outcome::default() };
+    let end = run.follow(&inbox, &session);
+    drop(session);
+    // The robot's stop, and what came before it.
+    for event in inbox.try_iter() {
+        if let Event::News(News::Records(records)) = event {
+            run.take(&records);
         }
     }
-    ExitCode::from(u8::from(outcome.errors))
+    match end {
+        Some(code) => code,
+        None => ExitCode::from(u8::from(run.outcome.errors)),
+    }
 }
+
+struct Run {
+    trace: Option<Trace>,
+    outcome: Outcome,
+}
+
+impl Run {
+    /// Until the run is over; an exit code where that doesn't depend on what went wrong in the program.
+    fn follow(&mut self, events: &Receiver<Event>, session: &Session) -> Option<ExitCode> {
+        for event in events {
+            match event {
+                Event::News(News::Records(records)) => {
+                    self.take(&records);
+                    if self.outcome.refused || self.nobody_reads() {
+                        return None;
+                    }
+                }
+                Event::News(News::Stuck) => say(STUCK),
+                Event::News(News::Ended(End::Failed(why))) => {
+                    return Some(fail(&format!("lrp failed and stopped the robot: {why}")));
+                }
+                Event::News(News::Ended(_)) => return None,
+                Event::Signal(Signal::Interrupt) => return Some(ExitCode::from(130)),
+                Event::Signal(Signal::Terminate | Signal::HangUp) => return Some(ExitCode::SUCCESS),
+                Event::Signal(Signal::Suspend) => {
+                    session.commands().halt();
+                    if let Err(error) = signals::suspend() {
+                        say(&format!("can't be suspended: {error}"));
+                    }
+                }
+                Event::Signal(Signal::Continue) => {}
+            }
+        }
+        None
+    }
+
+    fn take(&mut self, records: &[Record]) {
+        for record in records {
+            self.outcome.see(record);
+            if let Some(trace) = &mut self.trace {
+                trace.record(record);
+            }
+        }
+        if let Some(trace) = &mut self.trace {
+            trace.flush();
+        }
+    }
+
+    /// Standard output was closed, as by `| head`.
+    fn nobody_reads(&self) -> bool {
+        self.trace.as_ref().is_some_and(Trace::is_unread)
+    }
+}
+
+/// Said when a block can't be stopped.
+pub const STUCK: &str = "a block can't be stopped; the robot was halted, and the program waits for that block";
 
 fn fail(why: &str) -> ExitCode {
     eprintln!("lrp: {why}");

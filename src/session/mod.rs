@@ -2,6 +2,7 @@
 
 pub mod compile;
 pub mod driver;
+pub mod edits;
 pub mod engine_thread;
 pub mod findings;
 pub mod headless;
@@ -13,4 +14,5 @@ pub mod robots;
 pub mod signals;
 pub mod test_runner;
 pub mod trace;
+pub mod warden;
 pub mod watch;

@@ -4,17 +4,22 @@ use std::path::{Component, Path, PathBuf};
 
 use super::engine_thread::Library;
 
-/// `require "a.b"` reads `a/b.lua` under this folder, and nothing outside it.
-pub fn library(folder: PathBuf) -> Library {
+/// `require "a.b"` reads `a/b.lua` under this folder, and nothing outside it; `read` hears of each file that was read.
+pub fn library(folder: PathBuf, read: impl Fn(&Path) + Send + 'static) -> Library {
     Box::new(move |module| {
         let file = PathBuf::from(module.replace('.', "/")).with_extension("lua");
         if module.is_empty() || !file.components().all(|part| matches!(part, Component::Normal(_))) {
             return Err(format!("`{module}` does not name a Lua file under the program's folder"));
         }
-        read(&folder.join(file))
+        let path = folder.join(file);
+        let text = std::fs::read_to_string(&path).map_err(|error| format!("{} can't be read: {error}", path.display()))?;
+        read(&path);
+        Ok(text)
     })
 }
 
-fn read(path: &Path) -> Result<String, String> {
-    std::fs::read_to_string(path).map_err(|error| format!("{} can't be read: {error}", path.display()))
+/// What a block calls the Lua file at a path.
+pub fn name(folder: &Path, path: &Path) -> Option<String> {
+    let file = path.strip_prefix(folder).ok()?;
+    (file.extension()? == "lua").then(|| file.with_extension("").display().to_string().replace('/', "."))
 }

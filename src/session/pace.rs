@@ -25,14 +25,22 @@ impl Rate {
     }
 }
 
+/// Ten steps a second.
+impl Default for Rate {
+    fn default() -> Rate {
+        Rate(Some(10.0))
+    }
+}
+
 /// Program time as steps of one period each, counted from where the rate was last set so that nothing drifts.
 #[derive(Debug)]
 pub struct Pace {
     rate: Rate,
+    now: Time,
+    /// Where it is counted from, and the real time that this corresponds to; both later by each pause.
     base: Time,
-    periods: u64,
-    /// Real time that `base` corresponds to; later by each pause.
     started: Duration,
+    periods: u64,
 }
 
 #[derive(Debug, PartialEq, Eq)]
@@ -46,27 +54,21 @@ pub struct Due {
 
 impl Pace {
     pub fn new(rate: Rate, real: Duration) -> Pace {
-        Pace { rate, base: Time::ZERO, periods: 0, started: real }
+        Pace { rate, now: Time::ZERO, base: Time::ZERO, started: real, periods: 0 }
     }
 
     pub fn rate(&self) -> Rate {
         self.rate
     }
 
+    /// Of the last step.
     pub fn now(&self) -> Time {
-        self.at(self.periods)
-    }
-
-    fn at(&self, periods: u64) -> Time {
-        match self.rate.0 {
-            Some(hz) => Time(self.base.0 + (periods as f64 * 1e6 / hz).round() as u64),
-            None => self.base,
-        }
+        self.now
     }
 
     /// Steps a second from now on.
     pub fn set_rate(&mut self, rate: Rate, real: Duration) {
-        *self = Pace { rate, base: self.now(), periods: 0, started: real };
+        *self = Pace { rate, now: self.now, base: self.now, started: real, periods: 0 };
     }
 
     /// Program time stood still until now.
@@ -87,24 +89,31 @@ impl Pace {
     }
 
     /// The next step, whatever the time: for virtual time and for steps by hand.
-    pub fn next(&mut self) -> Time {
+    pub fn make(&mut self) -> Time {
         match self.rate.0 {
-            Some(_) => self.periods += 1,
-            None => self.base = self.base + Time(1000),
+            Some(hz) => self.count(hz, 1),
+            None => {
+                self.base = self.base + Time(1000);
+                self.now = self.now + Time(1000);
+            }
         }
-        self.now()
+        self.now
+    }
+
+    fn count(&mut self, hz: f64, periods: u64) {
+        self.periods += periods;
+        self.now = self.base + Time((self.periods as f64 * 1e6 / hz).round() as u64);
     }
 
     /// The step that is due at a real time.
     pub fn take(&mut self, real: Duration) -> Due {
         let Some(hz) = self.rate.0 else {
-            self.base = self.base + Time(real.saturating_sub(self.started).as_micros() as u64);
-            self.started = real;
-            return Due { now: self.base, skipped: 0, late: Duration::ZERO };
+            self.now = self.base + Time(real.saturating_sub(self.started).as_micros() as u64);
+            return Due { now: self.now, skipped: 0, late: Duration::ZERO };
         };
         let late = real.saturating_sub(self.due_at(self.periods + 1));
         let skipped = (late.as_secs_f64() * hz).floor() as u64;
-        self.periods += 1 + skipped;
-        Due { now: self.now(), skipped, late }
+        self.count(hz, 1 + skipped);
+        Due { now: self.now, skipped, late }
     }
 }

@@ -15,7 +15,15 @@ pub struct Trace {
     path: PathBuf,
     /// Until the header is written.
     conditions: Option<Conditions>,
-    broken: bool,
+    state: State,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum State {
+    Open,
+    /// Its reader has seen enough, as in `| head`.
+    Unread,
+    Failed,
 }
 
 /// What the first line of a trace tells besides the program's texts.
@@ -52,7 +60,7 @@ impl Trace {
             Some("-") => Box::new(BufWriter::new(io::stdout())),
             _ => Box::new(BufWriter::new(File::create(path)?)),
         };
-        Ok(Trace { out, path: path.to_path_buf(), conditions: Some(conditions), broken: false })
+        Ok(Trace { out, path: path.to_path_buf(), conditions: Some(conditions), state: State::Open })
     }
 
     fn header(&mut self, conditions: &Conditions, files: &[record::File]) {
@@ -75,14 +83,14 @@ impl Trace {
     }
 
     pub fn flush(&mut self) {
-        if !self.broken {
+        if self.state == State::Open {
             let result = self.out.flush();
             self.check(result);
         }
     }
 
     fn line(&mut self, line: &impl serde::Serialize) {
-        if self.broken {
+        if self.state != State::Open {
             return;
         }
         let result = serde_json::to_writer(&mut self.out, line).map_err(io::Error::from);
@@ -91,18 +99,19 @@ impl Trace {
     }
 
     fn check(&mut self, result: io::Result<()>) {
-        if let Err(error) = result {
-            self.broken = true;
-            // A reader that has seen enough, as in `| head`, is no fault.
-            if error.kind() != io::ErrorKind::BrokenPipe {
+        match result {
+            Ok(()) => {}
+            Err(error) if error.kind() == io::ErrorKind::BrokenPipe => self.state = State::Unread,
+            Err(error) => {
+                self.state = State::Failed;
                 eprintln!("lrp: the trace {} ends here: {error}", self.path.display());
             }
         }
     }
 
-    /// Whether nothing more can be written.
-    pub fn is_broken(&self) -> bool {
-        self.broken
+    /// Whether whoever read it has gone.
+    pub fn is_unread(&self) -> bool {
+        self.state == State::Unread
     }
 }
 

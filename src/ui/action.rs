@@ -82,7 +82,7 @@ pub struct Entry {
     pub reach: Reach,
 }
 
-const STATES: Reach = Reach::Panes(&[Pane::Machines, Pane::Graph, Pane::Detail]);
+const STATES: Reach = Reach::Panes(&[Pane::Machines, Pane::Graph]);
 const TREE: Reach = Reach::Panes(&[Pane::Machines]);
 const VALUES: Reach = Reach::Panes(&[Pane::Variables]);
 const LOG: Reach = Reach::Panes(&[Pane::Log]);
@@ -103,16 +103,16 @@ table! {
     Action::PutAtStart, "put-at-start", ["b"], "", "put the simulated robot back at its start", Robot, Reach::Screen;
 
     Action::Pause, "pause", ["Space"], "pause", "pause, or run on", Program, Reach::Screen;
-    Action::Step, "step", ["s"], "step", "make one step, then pause", Program, Reach::Screen;
+    Action::Step, "step", ["s"], "step", "make one step; while it runs, pause", Program, Reach::Screen;
     Action::Faster, "faster", ["+", "="], "", "more steps a second", Program, Reach::Screen;
     Action::Slower, "slower", ["-"], "", "fewer steps a second", Program, Reach::Screen;
-    Action::TransitionTo, "transition-to", ["t"], "go to state", "go to the selected state as a transition would", Program, STATES;
+    Action::TransitionTo, "transition-to", ["t"], "go to state", "go to the selected state: its actions run", Program, STATES;
     Action::JumpTo, "jump-to", ["J"], "jump", "jump to the selected state: no action runs", Program, STATES;
     Action::Restart, "restart", ["Ctrl-R"], "", "restart the program from scratch", Program, Reach::Screen;
 
     Action::EditValue, "edit-value", ["e", "Enter"], "edit", "type a value: any Lua expression", Values, VALUES;
-    Action::Increase, "increase", ["Right", "l", ">"], "", "a little more; a boolean changes over", Values, VALUES;
-    Action::Decrease, "decrease", ["Left", "h", "<"], "nudge", "a little less; a boolean changes over", Values, VALUES;
+    Action::Increase, "increase", ["Right", "l", ">"], "more", "a little more; a boolean changes over", Values, VALUES;
+    Action::Decrease, "decrease", ["Left", "h", "<"], "less", "a little less; a boolean changes over", Values, VALUES;
     Action::IncreaseMuch, "increase-much", ["Shift-Right", "L"], "", "much more", Values, VALUES;
     Action::DecreaseMuch, "decrease-much", ["Shift-Left", "H"], "", "much less", Values, VALUES;
 
@@ -126,7 +126,7 @@ table! {
     Action::OutOf, "out-of", ["Backspace"], "", "out to the enclosing state", Moving, STATES;
     Action::Unfold, "unfold", ["Right", "l"], "", "show what is inside", Moving, TREE;
     Action::Fold, "fold", ["Left", "h"], "", "hide what is inside, then go out", Moving, TREE;
-    Action::Follow, "follow", ["f"], "", "let the selection follow the innermost change, or hold it", Moving, Reach::Screen;
+    Action::Follow, "follow", ["f"], "", "follow the innermost change, or hold still", Moving, Reach::Screen;
 
     Action::NextPane, "next-pane", ["Tab"], "", "the next pane", Looking, Reach::Screen;
     Action::PreviousPane, "previous-pane", ["Shift-Tab"], "", "the pane before", Looking, Reach::Screen;
@@ -135,13 +135,13 @@ table! {
     Action::Focus(Pane::Variables), "variables", ["3"], "", "the variables", Looking, Reach::Screen;
     Action::Focus(Pane::Log), "log", ["4"], "", "the log", Looking, Reach::Screen;
     Action::Focus(Pane::World), "world", ["5"], "", "the simulated world", Looking, Reach::Screen;
-    Action::ToggleWorld, "toggle-world", ["w"], "world", "the world in place of the drawing, and back", Looking, Reach::Screen;
-    Action::Inspect, "inspect", ["i"], "inspect", "all about what is selected: source, times, the whole message", Looking, Reach::Screen;
+    Action::ToggleWorld, "toggle-world", ["w"], "world", "the world for the drawing, and back", Looking, Reach::Screen;
+    Action::Inspect, "inspect", ["i"], "inspect", "all about what is selected, and back", Looking, Reach::Screen;
     Action::Zoom, "zoom", ["z"], "", "the focused pane alone, and back", Looking, Reach::Screen;
-    Action::Filter, "filter", ["v"], "filter", "the log: everything, without transitions, warnings only", Looking, LOG;
+    Action::Filter, "filter", ["v"], "filter", "the log: all, no transitions, warnings", Looking, LOG;
     Action::OpenEditor, "open-editor", ["o"], "open", "open your editor at the selected line", Looking, Reach::Screen;
     Action::OpenEditor, "open-editor-at-log", ["Enter"], "", "open your editor at the line", Looking, LOG;
-    Action::Back, "back", ["Esc"], "", "leave: typing, help, full screen, the held log", Looking, Reach::Screen;
+    Action::Back, "back", ["Esc"], "", "leave: typing, help, full screen, detail", Looking, Reach::Screen;
 
     Action::Help, "help", ["?"], "help", "this help", Lrp, Reach::Screen;
     Action::Quit, "quit", ["q"], "", "stop the robot and quit", Lrp, Reach::Screen;
@@ -204,9 +204,7 @@ pub fn of_key_always(key: Key) -> Option<Action> {
 /// What the footer offers while a pane has the focus, without what is always there (STOP and help).
 pub fn offered(pane: Pane) -> impl Iterator<Item = &'static Entry> {
     let shown = move |entry: &&Entry| {
-        !entry.label.is_empty()
-            && entry.works_in(pane)
-            && !matches!(entry.action, Action::Runstop | Action::Help)
+        !entry.label.is_empty() && entry.works_in(pane) && !matches!(entry.action, Action::Runstop | Action::Help)
     };
     let own = TABLE.iter().filter(shown).filter(|entry| matches!(entry.reach, Reach::Panes(_)));
     let general = TABLE.iter().filter(shown).filter(|entry| !matches!(entry.reach, Reach::Panes(_)));

@@ -17,21 +17,22 @@ use std::sync::Arc;
 use crossterm::event::{KeyEvent, KeyEventKind};
 use ratatui::layout::{Rect, Size};
 
+pub use movement::top_for;
 pub use reading::{Filter, LogRow, Reading};
-pub use typing::Typing;
+pub use typing::{Text, Typing};
 
 use self::follow::Follow;
 use super::action;
 use super::key::Key;
-use super::panes::diagram::Diagram;
 use super::layout::{Extent, Figure, Layout, Pane, Simulated, Wish};
-use super::scope;
+use super::panes::diagram::Diagram;
+use super::scope::Listing;
 use super::theme::Theme;
 use super::tree;
 use super::view::{Path, View};
 use crate::model::{MachineId, Program};
 use crate::runtime::command::Command;
-use crate::runtime::record::{Record, What};
+use crate::runtime::record::{Level, Log, Record, What};
 
 #[derive(Clone, Debug)]
 pub struct Options {
@@ -106,8 +107,15 @@ type DiagramKey = (u64, MachineId, Size);
 pub enum Overlay {
     Nothing,
     /// From this line on.
-    Help { top: usize },
+    Help {
+        top: usize,
+    },
     Value(Typing),
+}
+
+/// A command that had no effect comes back as an error from nowhere in the program.
+fn is_refusal(log: &Log) -> bool {
+    log.level == Level::Error && log.state.is_empty() && log.file.is_empty()
 }
 
 impl App {
@@ -147,6 +155,7 @@ impl App {
             What::Enter { state } => self.entered(record.step, state),
             What::Set { var, .. } if self.nudged.as_ref().is_some_and(|(path, _)| path == var) => self.nudged = None,
             What::Resume => self.halted = false,
+            What::Log(log) if is_refusal(log) => self.message = Some(log.message.clone()),
             _ => (),
         }
         self.dirty = true;
@@ -258,8 +267,8 @@ impl App {
         self.program().map_or_else(Vec::new, |program| tree::rows(program, &self.folded))
     }
 
-    pub fn values(&self) -> Vec<scope::Row> {
-        scope::rows(&self.view, self.machine())
+    pub fn values(&self) -> Listing {
+        Listing::new(&self.view, self.machine())
     }
 
     pub fn tree_top(&self) -> usize {
@@ -276,8 +285,12 @@ impl App {
 
     /// None where the screen is too small.
     pub fn layout(&self, area: Rect) -> Option<Layout> {
+        Layout::new(area, self.wish())
+    }
+
+    fn wish(&self) -> Wish {
         let simulated = if self.view.world.is_some() { Simulated::World } else { Simulated::Nothing };
-        Layout::new(area, Wish { focus: self.focus, figure: self.figure, extent: self.extent, simulated })
+        Wish { focus: self.focus, figure: self.figure, extent: self.extent, simulated }
     }
 
     /// The drawing of a machine for an area: kept from the last frame where nothing changed.

@@ -17,6 +17,9 @@ pub fn fit(text: &str, room: u16) -> String {
     if width(&one_line) <= room {
         return one_line;
     }
+    if width(one_line.trim_end()) <= room {
+        return one_line.trim_end().into();
+    }
     let mut short = String::new();
     let mut taken = 1;
     for c in one_line.chars() {
@@ -37,18 +40,33 @@ pub fn wrap(text: &str, room: u16) -> Vec<String> {
     let mut lines = Vec::new();
     for paragraph in text.lines() {
         let mut line = String::new();
-        for word in paragraph.split_whitespace() {
-            if !line.is_empty() && width(&line) + 1 + width(word) > room {
+        let words = paragraph.split_whitespace().flat_map(|word| pieces(word, room));
+        for word in words {
+            if !line.is_empty() && width(&line) + 1 + width(&word) > room {
                 lines.push(std::mem::take(&mut line));
             }
             if !line.is_empty() {
                 line.push(' ');
             }
-            line.push_str(word);
+            line.push_str(&word);
         }
         lines.push(line);
     }
     lines
+}
+
+/// A word, cut where it is longer than a line.
+fn pieces(word: &str, room: u16) -> Vec<String> {
+    let mut pieces = vec![String::new()];
+    for c in word.chars() {
+        let last = pieces.len() - 1;
+        if width(&pieces[last]) + c.width().unwrap_or(0) as u16 > room && !pieces[last].is_empty() {
+            pieces.push(c.into());
+        } else {
+            pieces[last].push(c);
+        }
+    }
+    pieces
 }
 
 /// How long: `120 ms`, `4.3 s`, `2:04`, `1:02:04`.
@@ -85,7 +103,13 @@ pub fn number(n: f64) -> String {
         return "0".into();
     }
     if !n.is_finite() {
-        return if n.is_nan() { "nan".into() } else if n > 0.0 { "inf".into() } else { "-inf".into() };
+        return if n.is_nan() {
+            "nan".into()
+        } else if n > 0.0 {
+            "inf".into()
+        } else {
+            "-inf".into()
+        };
     }
     let magnitude = n.abs().log10().floor() as i32;
     if !(-5..9).contains(&magnitude) {
@@ -159,18 +183,29 @@ fn quoted(text: &str) -> String {
 }
 
 fn field(key: &str) -> String {
-    let named = key.chars().enumerate().all(|(i, c)| c == '_' || c.is_ascii_alphabetic() || (i > 0 && c.is_ascii_digit()));
+    let named =
+        key.chars().enumerate().all(|(i, c)| c == '_' || c.is_ascii_alphabetic() || (i > 0 && c.is_ascii_digit()));
     if named && !key.is_empty() { key.into() } else { format!("[{key:?}]") }
 }
 
-/// A message's fields without those that are zero, false or empty: what is said, not what is left out.
-pub fn telling(message: &Value) -> Value {
-    match message {
-        Value::Object(fields) => {
-            let kept = fields.iter().map(|(key, item)| (key.clone(), telling(item)));
-            Value::Object(kept.filter(|(_, item)| !is_silent(item)).collect())
+/// What a message says, field by field: `angular.z -0.8`; fields that are zero, false or empty are left out.
+pub fn message(message: &Value) -> String {
+    let mut said = Vec::new();
+    collect("", message, &mut said);
+    if said.is_empty() { "–".into() } else { said.join("  ") }
+}
+
+fn collect(path: &str, item: &Value, said: &mut Vec<String>) {
+    match item {
+        Value::Object(fields) if marker(item).is_none() => {
+            for (field, item) in fields {
+                let path = if path.is_empty() { field.clone() } else { format!("{path}.{field}") };
+                collect(&path, item, said);
+            }
         }
-        other => other.clone(),
+        _ if is_silent(item) => (),
+        _ if path.is_empty() => said.push(value(item)),
+        _ => said.push(format!("{path} {}", value(item))),
     }
 }
 
@@ -179,7 +214,7 @@ fn is_silent(value: &Value) -> bool {
         Value::Null | Value::Bool(false) => true,
         Value::Number(n) => n.as_f64() == Some(0.0),
         Value::String(text) => text.is_empty(),
-        Value::Object(fields) => fields.is_empty(),
+        Value::Array(items) => items.is_empty(),
         _ => false,
     }
 }

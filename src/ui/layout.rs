@@ -155,7 +155,7 @@ impl Layout {
 
     /// 80x24
     fn one_figure(&mut self, body: Rect, wish: Wish) {
-        let left = (body.width * 3 / 8).clamp(30, 36) + body.width / 40;
+        let left = (body.width * 9 / 20).clamp(30, 38);
         let (left, right) = self.beside(body, left);
         self.overview(left);
         let (figure, log) = above(right, right.height - (right.height / 3).clamp(5, 14));

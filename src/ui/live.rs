@@ -18,6 +18,7 @@ use super::terminal::Screen;
 use super::theme::Theme;
 use crate::runtime::{Command, Record};
 use crate::session::engine_thread::{End, News};
+use crate::session::headless::STUCK;
 use crate::session::live::{Session, Setup};
 use crate::session::signals::{Signal, Signals};
 use crate::session::trace::Trace;
@@ -62,9 +63,15 @@ fn live(setup: Setup, trace: Option<PathBuf>) -> Result<ExitCode, String> {
     let input = Input::read(send(&happened, Happened::Terminal)).map_err(|error| error.to_string())?;
     let mut live = Live { app, screen, session, input, trace, happened, held: None, warned: false, failed: None };
     let code = live.run(&inbox);
-    let Live { screen, session, failed, .. } = live;
+    let Live { screen, session, failed, mut trace, .. } = live;
     drop(session);
     drop(screen);
+    // The robot's stop, and what came before it.
+    for happened in inbox.try_iter() {
+        if let (Happened::News(News::Records(records)), Some(trace)) = (happened, &mut trace) {
+            records.iter().for_each(|record| trace.record(record));
+        }
+    }
     match failed {
         Some(why) => Err(why),
         None => Ok(code),
@@ -72,7 +79,7 @@ fn live(setup: Setup, trace: Option<PathBuf>) -> Result<ExitCode, String> {
 }
 
 /// Hands things of one kind on to the loop; when that has ended there is nobody to tell.
-fn send<T: 'static>(happened: &Sender<Happened>, kind: impl Fn(T) -> Happened + Send + 'static) -> impl Fn(T) + Send + 'static {
+fn send<T: 'static>(happened: &Sender<Happened>, kind: impl Fn(T) -> Happened + Clone + Send + 'static) -> impl Fn(T) + Clone + Send + 'static {
     let happened = happened.clone();
     move |thing| drop(happened.send(kind(thing)))
 }
@@ -149,7 +156,15 @@ impl Live {
             Happened::Signal(Signal::Continue) => Next::Go,
             Happened::News(News::Records(records)) => {
                 records.iter().for_each(|record| self.record(record));
+                if let Some(trace) = &mut self.trace {
+                    trace.flush();
+                }
                 Next::Go
+            }
+            Happened::News(News::Stuck) => {
+                self.app.stopped();
+                self.app.notice(STUCK);
+                Next::Answer
             }
             Happened::News(News::Ended(End::Failed(why))) => {
                 self.failed = Some(format!("something in lrp itself went wrong, and it stopped the robot: {why}"));

@@ -2,8 +2,8 @@
 
 use ratatui::style::{Color, Modifier, Style};
 
+use super::graph::EdgeKind;
 use super::view::{Gravity, Mode};
-use crate::model::TransitionKind;
 use crate::runtime::record::{Health, Level};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -51,11 +51,6 @@ impl Theme {
         Style::new().add_modifier(Modifier::REVERSED)
     }
 
-    /// The row a person left in another pane.
-    pub fn held(self) -> Style {
-        Style::new().add_modifier(Modifier::UNDERLINED)
-    }
-
     pub fn active(self) -> Style {
         self.bold().patch(self.colour(Color::Green))
     }
@@ -91,16 +86,13 @@ impl Theme {
         }
     }
 
-    pub fn transition(self, kind: TransitionKind) -> Style {
-        match kind {
-            TransitionKind::On | TransitionKind::Exit => self.colour(Color::LightBlue),
-            TransitionKind::Eps => self.colour(Color::Green),
-            TransitionKind::Ontime => self.colour(Color::Yellow),
-        }
-    }
-
-    pub fn wildcard(self) -> Style {
-        self.colour(Color::Magenta)
+    pub fn transition(self, kind: EdgeKind) -> Style {
+        self.colour(match kind {
+            EdgeKind::On | EdgeKind::Exit => Color::LightBlue,
+            EdgeKind::Eps => Color::Green,
+            EdgeKind::Ontime => Color::Yellow,
+            EdgeKind::Wildcard => Color::Magenta,
+        })
     }
 
     pub fn gravity(self, gravity: Gravity) -> Style {

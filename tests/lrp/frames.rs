@@ -3,7 +3,8 @@
 use std::fs;
 use std::path::PathBuf;
 
-use lrp::runtime::record::{Finding, What};
+use lrp::runtime::command::Command;
+use lrp::runtime::record::{BridgeState, Element, Finding, Health, Op, What};
 use lrp::ui::app::{App, Event, Options};
 use lrp::ui::key::Key;
 use lrp::ui::theme::Theme;
@@ -12,8 +13,9 @@ use ratatui::backend::TestBackend;
 use ratatui::buffer::{Buffer, Cell};
 use ratatui::layout::Size;
 use ratatui::style::{Color, Modifier};
+use serde_json::json;
 
-use crate::story::Story;
+use crate::story::{LINE_FOLLOWER, Story, program};
 
 /// The screen of a size after some records.
 pub fn screen(width: u16, height: u16, story: &Story) -> App {
@@ -128,6 +130,84 @@ fn with_a_rejected_edit() {
         }],
     });
     check_sizes("rejected", &story, "");
+}
+
+fn check_one(name: &str, story: &Story, keys: &str) {
+    let mut app = screen(80, 24, story);
+    press(&mut app, keys);
+    check(name, &app);
+}
+
+#[test]
+fn the_help() {
+    check_one("help_80x24", &Story::searching(), "?");
+    let mut app = screen(120, 40, &Story::searching());
+    press(&mut app, "?");
+    check("help_120x40", &app);
+}
+
+#[test]
+fn the_world_in_place_of_the_drawing() {
+    check_one("world_80x24", &Story::searching(), "w");
+    let mut app = screen(80, 12, &Story::searching());
+    press(&mut app, "w");
+    check("world_80x12", &app);
+}
+
+#[test]
+fn an_active_state_out_of_sight_is_named() {
+    let mut story = Story::searching();
+    story.at(90).take("follower", "follower/looking", "follower/bumpturn", None, "ontime", 5);
+    let app = screen(80, 12, &story);
+    check("out_of_sight_80x12", &app);
+}
+
+#[test]
+fn a_value_being_typed() {
+    check_one("typing_80x24", &Story::searching(), "3 Down Down e");
+}
+
+#[test]
+fn a_value_that_was_set() {
+    let mut story = Story::searching();
+    story.at(82).set("lightlim", json!(148), "command");
+    check_one("set_80x24", &story, "3 Down Down i");
+}
+
+#[test]
+fn a_state_inspected() {
+    check_one("inspect_80x24", &Story::searching(), "Down Down i");
+}
+
+#[test]
+fn the_robot_stopped_and_lost() {
+    let mut story = Story::searching();
+    story.at(90).tell(What::Command { command: Command::Runstop });
+    story.tell(What::Pause { reason: "runstop".into() });
+    story.tell(What::Bridge(BridgeState {
+        bridge: "robot".into(),
+        kind: "sim".into(),
+        state: Health::Lost,
+        message: Some("no answer for 2 s".into()),
+        world: None,
+    }));
+    check_one("stopped_80x24", &story, "");
+}
+
+#[test]
+fn an_edit_that_restarts() {
+    let mut story = Story::searching();
+    let changes = [(Op::Added, Element::State, "follower/a"), (Op::Added, Element::State, "follower/b")];
+    story.at(90).load(&program(LINE_FOLLOWER), &changes);
+    check_one("edited_80x24", &story, "Down Down z");
+}
+
+#[test]
+fn weight_alone_tells_without_colours() {
+    let size = Size::new(80, 24);
+    let mut app = App::new(Options { file: "line_follower.lrp".into(), rate: 10.0, theme: Theme::Plain, size });
+    Story::searching().records.iter().for_each(|record| app.record(record));
+    check("plain_80x24", &app);
 }
 
 #[test]

@@ -51,7 +51,8 @@ impl File {
         for (number, line) in self.code() {
             for (at, _) in line.match_indices("crate::") {
                 let rest = &line[at + "crate::".len()..];
-                let names = rest.strip_prefix('{').map_or_else(|| vec![head(rest)], |list| list.split(',').map(head).collect());
+                let names =
+                    rest.strip_prefix('{').map_or_else(|| vec![head(rest)], |list| list.split(',').map(head).collect());
                 let layers = names.into_iter().filter_map(|name| LAYERS.iter().position(|&layer| layer == name));
                 used.extend(layers.map(|layer| (number, layer)));
             }

@@ -7,7 +7,9 @@ use lrp::runtime::{Command, Record, What};
 pub fn line(record: &Record) -> String {
     let what = match &record.what {
         What::Load(load) => loaded(load),
-        What::Reject { findings } => format!("reject{}", findings.iter().map(|it| format!("\n    {}", finding(it))).collect::<String>()),
+        What::Reject { findings } => {
+            format!("reject{}", findings.iter().map(|it| format!("\n    {}", finding(it))).collect::<String>())
+        }
         What::Command { command } => format!("command {}", commanded(command)),
         What::Spawn { machine, by: Some(by) } => format!("spawn {machine} by {by}"),
         What::Spawn { machine, by: None } => format!("spawn {machine}"),
@@ -73,6 +75,7 @@ fn commanded(command: &Command) -> String {
         Command::Set { var, value } => format!("set {var} {value}"),
         Command::Restart => "restart".into(),
         Command::Runstop => "runstop".into(),
+        Command::FileChanged { file } => format!("file-changed {file}"),
         Command::PutAtStart { bridge } => format!("put-at-start {bridge}"),
     }
 }

@@ -1,11 +1,12 @@
 //! All integration tests of the package, in one binary.
 
+mod docs;
 mod editor;
 mod frames;
 mod graph;
+mod keys;
 mod loader;
 mod lua;
-mod program;
 mod quiet;
 mod settling;
 mod signals;
@@ -13,6 +14,7 @@ mod story;
 mod syntax;
 mod terminal;
 mod tracer;
+mod view;
 mod watch;
 mod checks;
 mod edits;
@@ -20,6 +22,7 @@ mod isolation;
 mod layers;
 mod lines;
 mod picture;
+mod plot;
 mod runs;
 mod stage;
 mod walk;

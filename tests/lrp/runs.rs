@@ -12,7 +12,8 @@ pub fn corpus(folder: &str) -> PathBuf {
 
 /// Compares what each case gives with the text beside it.
 pub fn compare(folder: &str, result: impl Fn(&str) -> String) {
-    let mut cases: Vec<PathBuf> = fs::read_dir(corpus(folder)).expect("the corpus").flatten().map(|it| it.path()).collect();
+    let mut cases: Vec<PathBuf> =
+        fs::read_dir(corpus(folder)).expect("the corpus").flatten().map(|it| it.path()).collect();
     cases.retain(|path| path.extension().is_some_and(|it| it == "lrp"));
     cases.sort();
     let mut different = Vec::new();

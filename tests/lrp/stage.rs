@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use lrp::lua::Limits;
-use lrp::runtime::{Command, Input, Options, Record, Time};
+use lrp::runtime::{Command, Engine, Input, Options, Record, Time};
 use lrp::session::compile::{Compiler, Rejected};
 use lrp::session::driver::Driver;
 use lrp::session::findings;
@@ -50,8 +50,8 @@ impl Stage {
         Stage { driver, compiler, period: 100.0, now: 0.0, records: Vec::new(), view: View::new(10.0) }
     }
 
-    pub fn driver(&self) -> &Driver {
-        &self.driver
+    pub fn engine(&self) -> &Engine {
+        self.driver.engine()
     }
 
     pub fn event(&mut self, event: Event) {

@@ -5,9 +5,17 @@ use std::sync::Arc;
 use lrp::model::Program;
 use lrp::runtime::record::*;
 use lrp::runtime::time::Time;
+use lrp::session::compile::Compiler;
+use lrp::syntax::Source;
 use serde_json::{Value, json};
 
-use crate::program::{LINE_FOLLOWER, program};
+pub const LINE_FOLLOWER: &str = include_str!("line_follower.lrp");
+
+/// A program named `line_follower.lrp`.
+pub fn program(text: &str) -> Arc<Program> {
+    let compiled = Compiler::new(Vec::new()).compile(Source::new("line_follower.lrp", text));
+    Arc::new(compiled.unwrap_or_else(|rejected| panic!("{:?}", rejected.diagnostics)))
+}
 
 /// Milliseconds of a step.
 const PERIOD: f64 = 100.0;
@@ -27,8 +35,13 @@ impl Story {
         let mut story = Story::new();
         story.sim();
         story.load(&program(LINE_FOLLOWER), &[]);
-        let globals =
-            [("lightlim", json!(128)), ("maxlook", json!(100)), ("forward", json!(0.2)), ("search", json!(0.8)), ("back", json!(-0.2))];
+        let globals = [
+            ("lightlim", json!(128)),
+            ("maxlook", json!(100)),
+            ("forward", json!(0.2)),
+            ("search", json!(0.8)),
+            ("back", json!(-0.2)),
+        ];
         for (name, value) in globals {
             story.set(name, value, "init");
         }
@@ -57,7 +70,10 @@ impl Story {
         }
         story.at(step as u64).log(Level::Warn, "third sweep", "follower/looking", 24);
         story.at(step as u64 + 2).sense(3.5, 1.62, 95.0, 142);
-        story.output("move", json!({"linear": {"x": 0.0, "y": 0.0, "z": 0.0}, "angular": {"x": 0.0, "y": 0.0, "z": -0.8}}));
+        story.output(
+            "move",
+            json!({"linear": {"x": 0.0, "y": 0.0, "z": 0.0}, "angular": {"x": 0.0, "y": 0.0, "z": -0.8}}),
+        );
         story.tell(What::Status { rate: 10.0, late: 0.2 });
         story
     }
@@ -131,11 +147,19 @@ impl Story {
     }
 
     /// A transition of a machine without anything inside, as its records.
-    pub fn take(&mut self, machine: &str, from: &str, to: &str, name: Option<&str>, trigger: &str, index: u32) -> &mut Story {
+    pub fn take(
+        &mut self,
+        machine: &str,
+        from: &str,
+        to: &str,
+        name: Option<&str>,
+        trigger: &str,
+        index: u32,
+    ) -> &mut Story {
         self.tell(What::Transition(Taken {
             machine: machine.into(),
-            from: from.into(),
-            to: to.into(),
+            from: from.rsplit('/').next().unwrap_or(from).into(),
+            to: to.rsplit('/').next().unwrap_or(to).into(),
             name: name.map(Into::into),
             trigger: trigger.into(),
             via: None,

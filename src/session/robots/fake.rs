@@ -1,10 +1,11 @@
 //! A stand-in for any robot: takes everything, says nothing by itself. For tests, where records tell what it was told.
 
+use std::path::Path;
 use std::sync::Arc;
 
 use serde_json::Value;
 
-use super::{Bridge, Stopper};
+use super::{Bridge, Concern, Problems, Stopper};
 use crate::model::description::{Description, Scope};
 use crate::model;
 use crate::runtime::Time;
@@ -47,6 +48,10 @@ impl Bridge for Fake {
 
     fn stopper(&self) -> Stopper {
         Arc::new(|| {})
+    }
+
+    fn file_changed(&mut self, _: &Path) -> Result<Concern, Problems> {
+        Ok(Concern::None)
     }
 
     fn put_at_start(&mut self) {}

@@ -29,8 +29,16 @@ pub trait Bridge {
     fn stop(&mut self);
     /// How to bring it to a halt from another thread.
     fn stopper(&self) -> Stopper;
+    /// A file was saved. Whether that concerned this robot, which then goes by the new text unless that is broken.
+    fn file_changed(&mut self, file: &Path) -> Result<Concern, Problems>;
     /// Puts a simulated robot back where it started; nothing for a real one.
     fn put_at_start(&mut self);
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Concern {
+    None,
+    TakenOver,
 }
 
 /// Brings a robot to a halt without asking the engine.
@@ -94,6 +102,14 @@ fn problem(span: Span, message: String) -> Problems {
 
 fn read_text(path: &Path) -> Result<String, String> {
     std::fs::read_to_string(path).map_err(|error| error.to_string())
+}
+
+/// The files that a robot reads.
+pub fn files(bridge: &model::Bridge, folder: &Path) -> Vec<std::path::PathBuf> {
+    match &*bridge.kind {
+        "sim" => sim::world_file(bridge, folder).into_iter().collect(),
+        _ => Vec::new(),
+    }
 }
 
 /// What a kind offers under its own names.

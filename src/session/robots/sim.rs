@@ -1,13 +1,13 @@
 //! The simulator as a robot: the `lrp-sim` crate's robot and world behind a bridge's inputs and outputs.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
 use lrp_sim::{Noise, Sim, Twist, World};
 use serde_json::{Value, json};
 
-use super::{Bridge, Problems, Stopper, problem, read_text};
+use super::{Bridge, Concern, Problems, Stopper, problem, read_text};
 use crate::model::description::{Description, Port, Scope};
 use crate::model;
 use crate::runtime::Time;
@@ -24,6 +24,7 @@ pub struct Simulated {
     world: Source,
     sim: Sim,
     halted: Arc<AtomicBool>,
+    folder: PathBuf,
 }
 
 /// The program's names for the simulator's inputs and outputs.
@@ -64,9 +65,9 @@ pub fn description(names: &Names) -> Description {
 impl Simulated {
     pub fn new(bridge: &model::Bridge, folder: &Path, seed: u64, file: FileId) -> Result<Simulated, Problems> {
         check_config(bridge)?;
-        let world = match bridge.config.get("world") {
+        let world = match world_file(bridge, folder) {
             None => Source::new("built-in.world", DEFAULT_WORLD),
-            Some(name) => read_world(bridge, folder, name)?,
+            Some(file) => read_world(bridge, &file)?,
         };
         let parsed = World::parse(&world.text).map_err(|faults| broken_world(&world, file, &faults))?;
         Ok(Simulated {
@@ -75,6 +76,7 @@ impl Simulated {
             world,
             bridge: bridge.clone(),
             halted: Arc::default(),
+            folder: folder.to_path_buf(),
         })
     }
 }
@@ -95,6 +97,9 @@ fn check_config(bridge: &model::Bridge) -> Result<(), Problems> {
         if !KEYS.contains(&key.as_str()) {
             return Err(unknown(bridge, "setting", key, KEYS));
         }
+    }
+    if config.get("world").is_some_and(|world| !world.is_string()) {
+        return Err(problem(bridge.span, "`world` is the name of a file, in quotes".to_string()));
     }
     for key in config.get("names").and_then(Value::as_object).into_iter().flat_map(|names| names.keys()) {
         if !PORTS.contains(&key.as_str()) {
@@ -118,13 +123,14 @@ fn unknown(bridge: &model::Bridge, what: &str, name: &str, known: &[&str]) -> Pr
     problems
 }
 
-fn read_world(bridge: &model::Bridge, folder: &Path, name: &Value) -> Result<Source, Problems> {
-    let Some(name) = name.as_str() else {
-        return Err(problem(bridge.span, "`world` is the name of a file, in quotes".to_string()));
-    };
-    let path = folder.join(name);
-    let text = read_text(&path).map_err(|error| problem(bridge.span, format!("the world `{}` can't be read: {error}", path.display())))?;
-    Ok(Source::new(path.display().to_string(), text))
+/// The file that a form names as its world.
+pub fn world_file(bridge: &model::Bridge, folder: &Path) -> Option<PathBuf> {
+    Some(folder.join(bridge.config.get("world")?.as_str()?))
+}
+
+fn read_world(bridge: &model::Bridge, file: &Path) -> Result<Source, Problems> {
+    let unreadable = |error| problem(bridge.span, format!("the world `{}` can't be read: {error}", file.display()));
+    Ok(Source::new(file.display().to_string(), read_text(file).map_err(unreadable)?))
 }
 
 fn broken_world(world: &Source, file: FileId, faults: &[lrp_sim::Fault]) -> Problems {
@@ -196,6 +202,17 @@ impl Bridge for Simulated {
     fn stopper(&self) -> Stopper {
         let halted = Arc::clone(&self.halted);
         Arc::new(move || halted.store(true, Ordering::SeqCst))
+    }
+
+    fn file_changed(&mut self, file: &Path) -> Result<Concern, Problems> {
+        if world_file(&self.bridge, &self.folder).as_deref() != Some(file) {
+            return Ok(Concern::None);
+        }
+        let world = read_world(&self.bridge, file)?;
+        let parsed = World::parse(&world.text).map_err(|faults| broken_world(&world, FileId(0), &faults))?;
+        self.sim.replace_world(parsed);
+        self.world = world;
+        Ok(Concern::TakenOver)
     }
 
     fn put_at_start(&mut self) {

@@ -3,7 +3,7 @@
 use ratatui::layout::{Rect, Size};
 
 use super::{App, Overlay};
-use crate::ui::layout::{Extent, Figure, Pane};
+use crate::ui::layout::{Extent, Figure, Layout, Pane, Wish};
 use crate::ui::panes::{detail, help};
 use crate::ui::tree::{self, Element};
 use crate::ui::view::{Path, owner, within};
@@ -52,7 +52,10 @@ impl App {
             Pane::Graph => self.go_in_graph(how),
             Pane::Variables => self.go_in_values(how),
             Pane::Log => self.go_in_log(how),
-            Pane::Detail => self.detail_top = self.scrolled(how, self.detail_top, detail::lines(self).len()),
+            Pane::Detail => {
+                self.detail_top =
+                    self.scrolled(how, self.detail_top, detail::lines(self, self.columns(Pane::Detail)).len())
+            }
             Pane::World => (),
         }
     }
@@ -76,7 +79,7 @@ impl App {
     }
 
     fn go_in_values(&mut self, how: Move) {
-        let rows: Vec<Path> = self.values().iter().filter_map(|row| row.path().cloned()).collect();
+        let rows: Vec<Path> = self.values().rows.iter().filter_map(|row| row.path().cloned()).collect();
         let at = rows.iter().position(|path| Some(path) == self.value.as_ref());
         if let Some(to) = how.from(at, rows.len(), self.page(Pane::Variables)) {
             self.value = Some(rows[to].clone());
@@ -171,8 +174,7 @@ impl App {
 
     /// The panes a person can go through with Tab: those seen, and where there is no place for it the graph.
     pub(super) fn next_pane(&mut self, step: isize) {
-        const ROUND: [Pane; 6] =
-            [Pane::Machines, Pane::Graph, Pane::World, Pane::Detail, Pane::Variables, Pane::Log];
+        const ROUND: [Pane; 6] = [Pane::Machines, Pane::Graph, Pane::World, Pane::Detail, Pane::Variables, Pane::Log];
         let seen = self.seen();
         let round: Vec<Pane> = ROUND.into_iter().filter(|pane| seen.contains(pane) || *pane == self.focus).collect();
         let at = round.iter().position(|&pane| pane == self.focus).unwrap_or(0) as isize;
@@ -193,10 +195,23 @@ impl App {
         shown.chain(every).collect()
     }
 
+    /// The panes that are seen while the machines have the focus.
+    pub(super) fn seen_without_focus(&self) -> Vec<Pane> {
+        let wish = Wish { focus: Pane::Machines, extent: Extent::Shared, ..self.wish() };
+        let layout = Layout::new(self.area(), wish);
+        layout.map_or_else(Vec::new, |layout| layout.panes.iter().map(|&(pane, _)| pane).collect())
+    }
+
     /// Rows a pane has for its list.
     pub(super) fn page(&self, pane: Pane) -> usize {
         let area = self.layout(self.area()).and_then(|layout| layout.area(pane));
         area.map_or(1, |area| usize::from(area.height.saturating_sub(1)))
+    }
+
+    /// Columns a pane has.
+    fn columns(&self, pane: Pane) -> u16 {
+        let area = self.layout(self.area()).and_then(|layout| layout.area(pane));
+        area.map_or(0, |area| area.width)
     }
 
     fn area(&self) -> Rect {
@@ -209,8 +224,9 @@ impl App {
         let rows = self.tree();
         let at = rows.iter().position(|row| Some(&row.path) == self.selected.as_ref());
         self.tree_top = top_for(self.tree_top, at, rows.len(), self.page(Pane::Machines));
-        let rows = self.values();
-        let at = rows.iter().position(|row| row.path().is_some() && row.path() == self.value.as_ref());
-        self.values_top = top_for(self.values_top, at, rows.len(), self.page(Pane::Variables));
+        let listing = self.values();
+        let (rows, height) = listing.shares(self.page(Pane::Variables)).upper;
+        let at = listing.position(self.value.as_ref()).filter(|&at| at < rows);
+        self.values_top = top_for(self.values_top, at, rows, height);
     }
 }

@@ -108,17 +108,31 @@ impl App {
         Some((path, element))
     }
 
+    /// A figure that is seen already is gone to; one that isn't takes the place of the drawing, or gives it back.
     fn toggle(&mut self, figure: Figure) {
-        let next = if self.focus == figure.pane() || (self.figure == figure && Figure::of(self.focus).is_none()) {
-            Figure::Graph
-        } else {
-            figure
-        };
-        self.figure = next;
-        let has_place = self.extent == Extent::Shared && self.page(next.pane()) > 1;
-        if Figure::of(self.focus).is_some() || !has_place {
-            self.focus_on(next.pane());
+        let pane = figure.pane();
+        if self.focus == pane || (self.figure == figure && !self.is_beside_the_drawing(pane)) {
+            return self.leave_figure();
         }
+        self.figure = figure;
+        if Figure::of(self.focus).is_some() || self.is_beside_the_drawing(pane) || self.page(pane) <= 1 {
+            self.focus_on(pane);
+        }
+    }
+
+    /// Back to the drawing; where it has no place of its own, to the machines.
+    fn leave_figure(&mut self) {
+        self.figure = Figure::Graph;
+        if Figure::of(self.focus).is_some() {
+            self.focus = Pane::Graph;
+            let shared = self.seen_without_focus().contains(&Pane::Graph);
+            self.focus_on(if shared { self.subject } else { Pane::Machines });
+        }
+    }
+
+    fn is_beside_the_drawing(&self, pane: Pane) -> bool {
+        let seen = self.seen_without_focus();
+        seen.contains(&pane) && seen.contains(&Pane::Graph)
     }
 
     fn zoom(&mut self) {
@@ -133,11 +147,8 @@ impl App {
             self.extent = Extent::Shared;
         } else if self.reading.place.is_some() && self.focus == Pane::Log {
             self.read_newest();
-        } else if self.focus == Pane::Detail {
-            self.figure = Figure::Graph;
-            self.focus_on(self.subject);
-        } else if self.figure == Figure::Detail {
-            self.figure = Figure::Graph;
+        } else if self.figure != Figure::Graph || Figure::of(self.focus).is_some() {
+            self.leave_figure();
         }
     }
 

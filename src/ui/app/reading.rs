@@ -92,10 +92,7 @@ impl Reading {
         };
         let shown_problems = rows[first_problem..first_problem + pinned].iter();
         let shown_entries = rows[problems + first_entry..].iter().take(space);
-        Window {
-            rows: shown_problems.chain(shown_entries).cloned().collect(),
-            hidden_problems: problems - pinned,
-        }
+        Window { rows: shown_problems.chain(shown_entries).cloned().collect(), hidden_problems: problems - pinned }
     }
 }
 

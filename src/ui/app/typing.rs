@@ -1,6 +1,6 @@
 //! Typing a value for a variable: one line at the bottom, so that nothing is covered.
 
-use crossterm::event::{Event as TerminalEvent, KeyCode, KeyEvent};
+use crossterm::event::{Event as TerminalEvent, KeyCode, KeyEvent, KeyModifiers};
 use tui_input::Input;
 use tui_input::backend::crossterm::EventHandler;
 
@@ -14,6 +14,15 @@ pub struct Typing {
     /// The variable.
     pub var: Path,
     pub input: Input,
+    pub text: Text,
+}
+
+/// Whose words stand in the line.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Text {
+    /// The present value: the first character typed takes its place, moving in it keeps it.
+    Present,
+    Typed,
 }
 
 impl App {
@@ -21,7 +30,7 @@ impl App {
         let Some(var) = self.settable() else { return Vec::new() };
         let value = self.view.variables.get(&var).and_then(|variable| variable.value.as_ref());
         let text = value.and_then(format::source).unwrap_or_default();
-        self.overlay = Overlay::Value(Typing { var, input: Input::new(text) });
+        self.overlay = Overlay::Value(Typing { var, input: Input::new(text), text: Text::Present });
         Vec::new()
     }
 
@@ -30,7 +39,11 @@ impl App {
         match event.code {
             KeyCode::Esc => self.overlay = Overlay::Nothing,
             KeyCode::Enter => return self.finish_typing(),
-            _ => {
+            code => {
+                let replaces = matches!(code, KeyCode::Char(_)) && event.modifiers.difference(KeyModifiers::SHIFT).is_empty();
+                if std::mem::replace(&mut typing.text, Text::Typed) == Text::Present && replaces {
+                    typing.input.reset();
+                }
                 typing.input.handle_event(&TerminalEvent::Key(event));
             }
         }

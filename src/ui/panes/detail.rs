@@ -4,14 +4,15 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
 
-use super::diagram::label;
 use super::{Title, draw_nothing};
-use crate::model::{BlockId, Entry, MachineId, Program, Sources, StateId, TransitionKind};
+use crate::model::diff::trigger_text;
+use crate::model::{BlockId, Entry, MachineId, Program, Sources, StateId, TransitionKind, Trigger};
 use crate::syntax::{Source, Span};
 use crate::ui::app::{App, LogRow};
 use crate::ui::format;
 use crate::ui::layout::Pane;
 use crate::ui::pen::Pen;
+use crate::ui::scope::Row;
 use crate::ui::tree::{self, Element};
 use crate::ui::view::{Gravity, Problem, name};
 
@@ -30,10 +31,11 @@ pub enum Tone {
     Aside,
     Code,
     Gravity(Gravity),
+    Caret(Gravity),
 }
 
 pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
-    let lines = lines(app);
+    let lines = lines(app, area.width);
     if lines.is_empty() {
         draw_nothing(app, area, buffer, "Select a state, a variable or a line of the log: here is all about it.");
     }
@@ -56,12 +58,13 @@ fn style(app: &App, tone: Tone) -> Style {
         Tone::Heading => theme.bold(),
         Tone::Text | Tone::Code => theme.normal(),
         Tone::Aside => theme.dim(),
-        Tone::Gravity(gravity) => theme.gravity(gravity),
+        Tone::Gravity(gravity) | Tone::Caret(gravity) => theme.gravity(gravity),
     }
 }
 
-pub fn lines(app: &App) -> Vec<Line> {
-    let mut page = Page { app, lines: Vec::new() };
+/// For a pane of this many columns.
+pub fn lines(app: &App, width: u16) -> Vec<Line> {
+    let mut page = Page { app, width: width.saturating_sub(4), lines: Vec::new() };
     match app.subject() {
         Pane::Variables => page.variable(),
         Pane::Log => page.log_row(),
@@ -72,6 +75,8 @@ pub fn lines(app: &App) -> Vec<Line> {
 
 struct Page<'a> {
     app: &'a App,
+    /// Columns of a line below a heading.
+    width: u16,
     lines: Vec<Line>,
 }
 
@@ -82,6 +87,11 @@ impl Page<'_> {
 
     fn add_at(&mut self, tone: Tone, text: impl Into<String>, place: String) {
         self.lines.push(Line { text: text.into(), place, tone });
+    }
+
+    /// In as many lines as it needs.
+    fn add_wrapped(&mut self, tone: Tone, text: &str) {
+        format::wrap(text, self.width).into_iter().for_each(|line| self.add(tone, line));
     }
 
     fn element(&mut self) {
@@ -109,7 +119,9 @@ impl Page<'_> {
                 self.add(Tone::Text, format!("in {active} since {}", format::clock(running.entered)));
             }
         }
-        self.add(Tone::Heading, "events");
+        if !machine.events.is_empty() {
+            self.add(Tone::Heading, "events");
+        }
         for &event in &machine.events {
             let event = &program[event];
             self.add_at(Tone::Code, event.name.to_string(), place(program, event.span));
@@ -138,14 +150,23 @@ impl Page<'_> {
         for &id in state.outgoing.iter().chain(&state.exits) {
             let transition = &program[id];
             let form = match (transition.kind, &transition.sources) {
-                (_, Sources::Any) => "*",
+                (TransitionKind::On, Sources::Any) => "* on",
+                (TransitionKind::Ontime, Sources::Any) => "* ontime",
+                (TransitionKind::Eps, Sources::Any) => "* eps",
                 (TransitionKind::On, _) => "on",
                 (TransitionKind::Eps, _) => "eps",
                 (TransitionKind::Ontime, _) => "ontime",
                 (TransitionKind::Exit, _) => "exit",
             };
-            let text = format!("{form} {} → {}", label(program, transition), transition.target_name);
-            self.add_at(Tone::Code, text, place(program, transition.span));
+            let trigger = trigger_text(program, &transition.trigger);
+            let name = transition.name.as_ref().map_or(String::new(), |name| format!("  {name}"));
+            let cause = format!("{form} {trigger}");
+            let text = format!("{} → {}{name}", cause.trim_end(), transition.target_name);
+            self.add_at(Tone::Text, text, place(program, transition.span));
+            if let Trigger::Event(event) = transition.trigger {
+                let code = program[program[event].block].code.trim();
+                self.add(Tone::Aside, format!("  {code}"));
+            }
         }
     }
 
@@ -199,7 +220,12 @@ impl Page<'_> {
                     let text = format!("was {}", format::value(previous));
                     self.add(Tone::Aside, text);
                 }
-                self.add(Tone::Aside, format!("set at {} by {}", format::clock(variable.changed), variable.by));
+                let by = match &*variable.by {
+                    "command" => "by hand",
+                    "init" => "at its beginning",
+                    by => &format!("by {by}"),
+                };
+                self.add_wrapped(Tone::Aside, &format!("set at {} {by}", format::clock(variable.changed)));
                 let history: Vec<f64> = variable.history.iter().copied().collect();
                 self.add(Tone::Text, format::sparkline(&history, 32));
             }
@@ -208,12 +234,12 @@ impl Page<'_> {
     }
 
     fn field(&mut self, path: &str) {
-        for row in self.app.values() {
-            if let crate::ui::scope::Row::Field { path: other, value, at, .. } = row
+        for row in self.app.values().rows {
+            if let Row::Field { path: other, value, at, .. } | Row::Message { path: other, value, at, .. } = row
                 && *other == *path
             {
-                self.add(Tone::Text, format::value(&value));
-                self.add(Tone::Aside, format!("came at {}", format::clock(at)));
+                self.add_wrapped(Tone::Text, &format::value(&value));
+                self.add(Tone::Aside, format!("at {}", format::clock(at)));
             }
         }
     }
@@ -230,7 +256,7 @@ impl Page<'_> {
                 let Some(entry) = app.view().journal.get(*number) else { return };
                 let place = entry.place.as_ref().map_or(String::new(), |(file, line)| format!("{file}:{line}"));
                 self.add_at(Tone::Heading, format::clock(entry.t), place);
-                entry.text.lines().for_each(|line| self.add(Tone::Text, line));
+                self.add_wrapped(Tone::Text, &entry.text);
                 if !entry.state.is_empty() {
                     self.add(Tone::Aside, format!("in {}", entry.state));
                 }
@@ -246,16 +272,17 @@ impl Page<'_> {
         };
         let key = &problem.key;
         let heading = format!("{word}[{}]", key.code);
-        self.add_at(Tone::Gravity(problem.gravity), heading, format!("{}:{}:{}", key.file, key.line, key.column));
-        format::wrap(&problem.message, 60).into_iter().for_each(|line| self.add(Tone::Text, line));
+        self.add(Tone::Gravity(problem.gravity), heading);
+        self.add_wrapped(Tone::Aside, &format!("{}:{}:{}", key.file, key.line, key.column));
+        self.add_wrapped(Tone::Text, &problem.message);
         self.source_line(problem);
         if let Some(help) = &problem.help {
-            format::wrap(&format!("help: {help}"), 60).into_iter().for_each(|line| self.add(Tone::Text, line));
+            self.add_wrapped(Tone::Text, &format!("help: {help}"));
         }
         if problem.count > 0 {
             let times = if problem.count == 1 { "once".into() } else { format!("{} times", problem.count) };
             let inside = if problem.state.is_empty() { String::new() } else { format!(" in {}", problem.state) };
-            self.add(Tone::Aside, format!("{times}{inside}, last at {}", format::clock(problem.last)));
+            self.add_wrapped(Tone::Aside, &format!("{times}{inside}, last at {}", format::clock(problem.last)));
         }
     }
 
@@ -266,11 +293,15 @@ impl Page<'_> {
         let source: Option<&Source> = program.sources.iter().find(|source| source.name == key.file);
         let Some(source) = source.filter(|_| !problem.is_of_rejected_text()) else { return };
         let text = source.text[source.line_range(key.line)].replace('\t', " ");
-        let number = key.line.to_string();
-        self.add(Tone::Code, format!("{number} │ {text}"));
-        let before: String = text.chars().take(key.column.saturating_sub(1)).collect();
-        let columns = usize::from(format::width(&before)) + number.len();
-        self.add(Tone::Gravity(problem.gravity), format!("  {}   ^", " ".repeat(columns)));
+        let indent = text.chars().count() - text.trim_start().chars().count();
+        let number = format!("{} │ ", key.line);
+        let room = usize::from(self.width).saturating_sub(number.chars().count());
+        let at = key.column.saturating_sub(1);
+        let from = indent.min(at).max((at + 2).saturating_sub(room));
+        self.add(Tone::Code, number.clone() + &text.chars().skip(from).collect::<String>());
+        let before: String = text.chars().take(at).skip(from).collect();
+        let columns = number.chars().count() + usize::from(format::width(&before));
+        self.add(Tone::Caret(problem.gravity), " ".repeat(columns) + "^");
     }
 }
 
@@ -279,9 +310,10 @@ fn line_of(problem: &Problem) -> String {
 }
 
 fn place(program: &Program, span: Span) -> String {
-    program.sources.get(usize::from(span.file.0)).map_or(String::new(), |source| {
-        format!(":{}", source.line(span.start as usize))
-    })
+    program
+        .sources
+        .get(usize::from(span.file.0))
+        .map_or(String::new(), |source| format!(":{}", source.line(span.start as usize)))
 }
 
 /// The lines of a block without the indentation they share.

@@ -5,7 +5,7 @@ use ratatui::layout::{Position, Rect};
 use unicode_width::UnicodeWidthChar;
 
 use crate::ui::action::{self, Action};
-use crate::ui::app::{App, Overlay, Typing};
+use crate::ui::app::{App, Overlay, Text, Typing};
 use crate::ui::format;
 use crate::ui::pen::Pen;
 use crate::ui::view::Mode;
@@ -29,7 +29,10 @@ pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Option<Position> {
         }
         (Some(typing), None) => Some(draw_typing(app, typing, pen, area)),
         (None, None) => {
-            draw_keys(app, &mut pen);
+            match app.overlay() {
+                Overlay::Help { .. } => draw_key(app, "Esc", "back", &mut pen),
+                Overlay::Nothing | Overlay::Value(_) => draw_keys(app, &mut pen),
+            }
             None
         }
     }
@@ -43,7 +46,11 @@ fn draw_typing(app: &App, typing: &Typing, mut pen: Pen, area: Rect) -> Position
     pen.put(&format::fit(&typing.var, pen.room() / 2), theme.bold()).put(" = ", theme.dim());
     let (start, room) = (pen.at(), pen.room().saturating_sub(1));
     let scroll = typing.input.visual_scroll(usize::from(room));
-    pen.put(&after_columns(typing.input.value(), scroll), theme.normal());
+    let style = match typing.text {
+        Text::Present => theme.selected(),
+        Text::Typed => theme.normal(),
+    };
+    pen.put(&after_columns(typing.input.value(), scroll), style);
     let cursor = typing.input.visual_cursor().saturating_sub(scroll) as u16;
     Position::new(start.saturating_add(cursor).min(area.right().saturating_sub(1)), area.y)
 }
@@ -67,13 +74,23 @@ fn draw_keys(app: &App, pen: &mut Pen) {
         if pen.room() < format::width(&key) + 1 + format::width(label) {
             return;
         }
-        pen.put(&key, theme.key()).put(" ", theme.dim()).put(label, theme.dim()).put("  ", theme.dim());
+        draw_key(app, &key, label, pen);
     }
+}
+
+fn draw_key(app: &App, key: &str, label: &str, pen: &mut Pen) {
+    let theme = app.theme();
+    pen.put(key, theme.key()).put(" ", theme.dim()).put(label, theme.dim()).put("  ", theme.dim());
 }
 
 /// `Space` is a word among words in the footer; `R` and `r` are different keys.
 fn short(key: &str) -> String {
-    if key.chars().count() > 1 { key.to_lowercase() } else { key.into() }
+    match key {
+        "Left" => "←".into(),
+        "Right" => "→".into(),
+        _ if key.chars().count() > 1 => key.to_lowercase(),
+        _ => key.into(),
+    }
 }
 
 fn label(app: &App, entry: &action::Entry) -> &'static str {

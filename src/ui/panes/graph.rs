@@ -6,11 +6,12 @@ use ratatui::style::{Modifier, Style};
 
 use super::diagram::Diagram;
 use super::{Title, draw_nothing};
-use crate::model::{MachineId, Program, StateId, TransitionId};
+use crate::model::{MachineId, Program, StateId};
 use crate::ui::app::App;
-use crate::ui::graph::{EdgeKind, Part};
+use crate::ui::graph::Part;
 use crate::ui::layout::Pane;
-use crate::ui::view::name;
+use crate::ui::machine_graph;
+use crate::ui::view::{Which, name};
 
 pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
     let Some((program, machine)) = app.program().zip(app.machine()) else {
@@ -20,6 +21,7 @@ pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
     if program[machine].states.is_empty() {
         draw_nothing(app, area, buffer, "This machine has no states yet.");
     }
+    let area = Rect { x: area.x + 1.min(area.width), width: area.width.saturating_sub(2), ..area };
     let diagram = app.diagram(program, machine, area);
     let brush = Brush::new(app, program, machine, &diagram);
     brush.draw(area, buffer);
@@ -34,7 +36,8 @@ struct Brush<'a> {
     diagram: &'a Diagram,
     active: Option<StateId>,
     selected: Option<StateId>,
-    last: Option<TransitionId>,
+    /// The edges of the transition taken last.
+    last: Option<u32>,
 }
 
 impl<'a> Brush<'a> {
@@ -48,7 +51,10 @@ impl<'a> Brush<'a> {
             diagram,
             active: view.active(path).and_then(|state| program.state(state)),
             selected: app.selected().and_then(|path| program.state(path)),
-            last: last.and_then(|(index, _)| program[machine].transitions.get(index as usize).copied()),
+            last: last.map(|which| match which {
+                Which::Own(index) => index,
+                Which::Exit => machine_graph::EXIT,
+            }),
         }
     }
 
@@ -66,6 +72,7 @@ impl<'a> Brush<'a> {
                 }
             }
         }
+        self.draw_heavy((left, top), area, buffer);
         for node in 0..self.diagram.nodes.len() {
             self.draw_inside(node, (left, top), area, buffer);
         }
@@ -98,7 +105,7 @@ impl<'a> Brush<'a> {
             }
             Part::Line(edge) | Part::Label(edge) | Part::Head(edge) => self.edge_style(edge),
             Part::Crossing { across, down } => {
-                let taken = |edge: usize| Some(self.diagram.edges[edge].0) == self.last;
+                let taken = |edge: usize| Some(self.diagram.edges[edge].index) == self.last;
                 self.edge_style(if taken(down) && !taken(across) { down } else { across })
             }
         }
@@ -117,15 +124,25 @@ impl<'a> Brush<'a> {
     }
 
     fn edge_style(&self, edge: usize) -> Style {
-        let theme = self.app.theme();
-        let (id, kind) = self.diagram.edges[edge];
-        let style = match kind {
-            EdgeKind::Wildcard => theme.wildcard(),
-            EdgeKind::On | EdgeKind::Eps | EdgeKind::Ontime | EdgeKind::Exit => {
-                theme.transition(self.program[id].kind)
+        let edge = self.diagram.edges[edge];
+        let style = self.app.theme().transition(edge.kind);
+        if Some(edge.index) == self.last { style.add_modifier(Modifier::BOLD) } else { style }
+    }
+
+    /// What was taken last is heavy, so that it shows without colours too.
+    fn draw_heavy(&self, (left, top): (u16, u16), area: Rect, buffer: &mut Buffer) {
+        let edges = self.diagram.edges.iter().enumerate();
+        for (edge, _) in edges.filter(|(_, edge)| Some(edge.index) == self.last) {
+            for (at, glyph) in self.diagram.drawing.heavy_line(edge) {
+                let (Some(x), Some(y)) = (at.x.checked_sub(left), at.y.checked_sub(top)) else { continue };
+                if x < area.width
+                    && y < area.height
+                    && let Some(cell) = buffer.cell_mut(Position::new(area.x + x, area.y + y))
+                {
+                    cell.set_char(glyph).set_style(self.edge_style(edge));
+                }
             }
-        };
-        if Some(id) == self.last { style.add_modifier(Modifier::BOLD) } else { style }
+        }
     }
 
     /// The name of the state that is active inside.

@@ -38,13 +38,13 @@ pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
 
 fn draw_problem(app: &App, problem: &Problem, pen: &mut Pen) {
     let theme = app.theme();
-    let (word, style) = (word(problem.gravity), theme.gravity(problem.gravity));
     let time = if problem.count > 0 { format::clock(problem.last) } else { String::new() };
-    draw_start(app, &time, word, style, pen);
-    pen.right_column(&line(problem.key.line), 6, theme.dim());
+    draw_time(app, &time, pen);
+    pen.right_column(&line(problem.key.line), 5, theme.dim());
     if problem.count > 1 {
         pen.put_right(&format!(" ×{}", problem.count), theme.normal());
     }
+    pen.put(word(problem.gravity), theme.gravity(problem.gravity)).put("  ", theme.normal());
     if !problem.state.is_empty() {
         pen.put(name(&problem.state), theme.normal()).put(": ", theme.normal());
     }
@@ -53,36 +53,39 @@ fn draw_problem(app: &App, problem: &Problem, pen: &mut Pen) {
 
 fn draw_entry(app: &App, entry: &Entry, pen: &mut Pen) {
     let theme = app.theme();
-    let (word, style) = match entry.kind {
-        Kind::Log(Level::Error) => ("error", theme.level(Level::Error)),
-        Kind::Log(Level::Warn) => ("warn", theme.level(Level::Warn)),
-        Kind::Log(Level::Debug) => ("debug", theme.level(Level::Debug)),
-        Kind::Log(Level::Info) => ("info", theme.dim()),
-        Kind::Change | Kind::Note => ("", theme.normal()),
-    };
-    draw_start(app, &format::clock(entry.t), word, style, pen);
-    let at = entry.place.as_ref().map_or(String::new(), |(_, number)| line(*number));
-    pen.right_column(&at, 6, theme.dim());
-    if matches!(entry.kind, Kind::Log(_)) && !entry.state.is_empty() {
-        pen.put(name(&entry.state), theme.normal()).put(": ", theme.normal());
+    draw_time(app, &format::clock(entry.t), pen);
+    match entry.kind {
+        Kind::Log(level) => draw_log(app, entry, level, pen),
+        Kind::Change | Kind::Note => {
+            pen.put(&entry.text, theme.normal());
+        }
     }
-    let style = match entry.kind {
-        Kind::Log(Level::Debug) => theme.dim(),
-        _ => theme.normal(),
-    };
-    pen.put(&entry.text, style);
 }
 
-/// The columns of time and severity; in a narrow pane the severity's first letter.
-fn draw_start(app: &App, time: &str, word: &str, style: ratatui::style::Style, pen: &mut Pen) {
+fn draw_log(app: &App, entry: &Entry, level: Level, pen: &mut Pen) {
     let theme = app.theme();
-    if pen.room() >= 24 {
-        pen.column_right(time, 7, theme.dim()).put("  ", theme.dim());
+    let at = entry.place.as_ref().map_or(String::new(), |(_, number)| line(*number));
+    if !at.is_empty() {
+        pen.right_column(&at, 5, theme.dim());
     }
-    match pen.room() {
-        36.. => pen.column(word, 6, style),
-        _ => pen.column(&word.chars().take(1).collect::<String>(), 2, style),
+    let (word, text) = match level {
+        Level::Error => ("error", theme.normal()),
+        Level::Warn => ("warn", theme.normal()),
+        Level::Info => ("info", theme.normal()),
+        Level::Debug => ("debug", theme.dim()),
     };
+    pen.put(word, theme.level(level)).put("  ", theme.normal());
+    if !entry.state.is_empty() {
+        pen.put(name(&entry.state), text).put(": ", text);
+    }
+    pen.put(&entry.text, text);
+}
+
+/// Left out where the words need the room.
+fn draw_time(app: &App, time: &str, pen: &mut Pen) {
+    if pen.room() >= 30 {
+        pen.column_right(time, 6, app.theme().dim()).put("  ", app.theme().dim());
+    }
 }
 
 fn word(gravity: Gravity) -> &'static str {

@@ -21,9 +21,23 @@ pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
     for (y, row) in (0..area.height).zip(rows.iter().skip(app.tree_top())) {
         draw_row(app, program, row, Pen::new(buffer, area, y));
     }
-    let below = rows.len().saturating_sub(app.tree_top() + usize::from(area.height));
-    let note = if below > 0 { format!("{below} more") } else { String::new() };
-    Title::new(Pane::Machines.title(), note)
+    Title::new(Pane::Machines.title(), note(app, &rows, usize::from(area.height)))
+}
+
+/// What is out of sight: an active state above all.
+fn note(app: &App, rows: &[Row], height: usize) -> String {
+    let above = &rows[..app.tree_top().min(rows.len())];
+    let below = rows.get(app.tree_top() + height..).unwrap_or(&[]);
+    let active = |rows: &[Row]| {
+        let innermost = rows.iter().filter(|row| app.view().is_active(&row.path)).max_by_key(|row| row.depth);
+        innermost.map(|row| name(&row.path).to_owned())
+    };
+    match (active(below), active(above)) {
+        (Some(name), _) => format!("● {name} ↓"),
+        (None, Some(name)) => format!("● {name} ↑"),
+        (None, None) if !below.is_empty() => format!("{} more", below.len()),
+        (None, None) => String::new(),
+    }
 }
 
 fn draw_row(app: &App, program: &Program, row: &Row, mut pen: Pen) {
@@ -92,10 +106,12 @@ fn draw_numbers(app: &App, program: &Program, id: StateId, pen: &mut Pen) {
     }
 }
 
-/// `-120 ms` until a timeout, or else how long the state has been active.
+/// `120 ms` until a timeout, with its bar, or else how long the state has been active.
 fn time(view: &View, program: &Program, id: StateId) -> String {
-    if let Some(timeout) = view.timeout(program, id) {
-        return format!("-{}", format::duration(timeout.left()));
+    match view.timeout(program, id).map(|timeout| timeout.left()) {
+        Some(left) if left < 0.5 => return "due".into(),
+        Some(left) => return format::duration(left),
+        None => (),
     }
     let state = &program[id];
     let active = view.is_active(&state.path);

@@ -8,7 +8,7 @@ use crate::runtime::record::Health;
 use crate::ui::app::App;
 use crate::ui::format;
 use crate::ui::pen::Pen;
-use crate::ui::view::{Edit, Mode};
+use crate::ui::view::{Edit, Mode, is_own_doing};
 
 pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) {
     let (theme, view) = (app.theme(), app.view());
@@ -23,13 +23,15 @@ pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) {
     pen.put(&format!(" {badge} "), theme.mode(mode));
     pen.column("", 9 - format::width(badge).min(8), theme.normal());
     let clock = format::clock(view.t);
-    pen.column(&rate(app), if wide { 13 } else { 7 }, theme.normal());
+    let narrow = area.width < 100;
+    let pace = if narrow && *mode != Mode::Running { format!("step {}", view.step) } else { rate(app) };
+    pen.column(&pace, if wide { 11 } else { 9 }, theme.normal());
     pen.column(&clock, format::width(&clock).max(6) + 2, theme.normal());
-    if area.width >= 100 {
+    if !narrow {
         pen.column(&format!("step {}", view.step), 14, theme.dim());
     }
-    draw_edit(app, &mut pen);
     draw_bridges(app, &mut pen);
+    draw_edit(app, &mut pen);
     if let Mode::Paused { reason } = mode
         && pen.room() > 12
         && !is_own_doing(reason)
@@ -44,11 +46,6 @@ fn badge(mode: &Mode) -> &'static str {
         Mode::Paused { .. } => "PAUSED",
         Mode::Stopped => "STOPPED",
     }
-}
-
-/// A person who pressed the key knows why.
-fn is_own_doing(reason: &str) -> bool {
-    matches!(reason, "" | "command" | "pause" | "user" | "step")
 }
 
 /// `10 Hz`, and where it isn't kept `7.3/10 Hz`.
@@ -83,21 +80,21 @@ fn draw_bridges(app: &App, pen: &mut Pen) {
 fn draw_edit(app: &App, pen: &mut Pen) {
     let Some(edit) = &app.view().edit else { return };
     let (text, style) = edit_words(app, edit);
-    let room = pen.room().saturating_sub(if pen.room() > 50 { 12 } else { 2 });
-    pen.put_right(" ", style).put_right(&format::fit(&text, room), style).put_right("  ", Style::new());
+    pen.put_right(" ", style).put_right(&text, style).put_right("  ", Style::new());
 }
 
 fn edit_words(app: &App, edit: &Edit) -> (String, Style) {
     let theme = app.theme();
     match edit {
-        Edit::Loaded => ("loaded".into(), theme.dim()),
+        Edit::Loaded => (String::new(), theme.dim()),
         Edit::Taken { changes, restarted: None } => (format!("saved: {changes}"), theme.normal()),
         Edit::Taken { changes, restarted: Some(_) } => (format!("restarted: {changes}"), theme.bold()),
-        Edit::Rejected { first: Some(first), others } => {
+        Edit::Mended => ("mended".into(), theme.normal()),
+        Edit::Rejected { first, .. } if first.line == 0 => (first.message.clone(), theme.stop()),
+        Edit::Rejected { first, others } => {
             let more = if *others > 0 { format!(" (+{others})") } else { String::new() };
             (format!("line {}: {}{more}", first.line, first.message), theme.stop())
         }
-        Edit::Rejected { first: None, .. } => ("not taken over".into(), theme.stop()),
     }
 }
 

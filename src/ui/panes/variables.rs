@@ -6,27 +6,37 @@ use serde_json::Value;
 
 use super::{Title, draw_nothing};
 use crate::runtime::time::Time;
-use crate::ui::app::App;
+use crate::ui::app::{App, top_for};
 use crate::ui::format;
 use crate::ui::layout::Pane;
 use crate::ui::pen::Pen;
-use crate::ui::scope::{Row, Way};
+use crate::ui::scope::{Row, Shares, Way};
 use crate::ui::view::Variable;
 
 /// Columns of a number.
 const VALUE: u16 = 9;
 
 pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
-    let rows = app.values();
-    if rows.is_empty() {
+    let listing = app.values();
+    if listing.rows.is_empty() {
         draw_nothing(app, area, buffer, "No variables, and nothing from a robot.");
     }
-    for (y, row) in (0..area.height).zip(rows.iter().skip(app.values_top())) {
+    let Shares { upper: (rows, height), lower: (carried, below) } = listing.shares(usize::from(area.height));
+    let at = listing.position(app.selected_value());
+    let top = app.values_top().min(rows);
+    for (y, row) in (0..height as u16).zip(&listing.rows[top..rows]) {
         draw_row(app, row, Pen::new(buffer, area, y));
     }
-    let below = rows.len().saturating_sub(app.values_top() + usize::from(area.height));
-    let note = if below > 0 { format!("{below} more") } else { String::new() };
-    Title::new(Pane::Variables.title(), note)
+    let first = rows + top_for(0, at.and_then(|at| at.checked_sub(rows)), carried, below);
+    for (y, row) in (height as u16..area.height).zip(&listing.rows[first..]) {
+        draw_row(app, row, Pen::new(buffer, area, y));
+    }
+    let hidden = rows.saturating_sub(top + height) + carried.saturating_sub(first - rows + below);
+    let note = if hidden > 0 { format!("{hidden} more") } else { String::new() };
+    match listing.scope_at(top) {
+        Some(scope) => Title::new(format!("{}  {scope}", Pane::Variables.title()), note),
+        None => Title::new(Pane::Variables.title(), note),
+    }
 }
 
 fn draw_row(app: &App, row: &Row, mut pen: Pen) {
@@ -44,20 +54,28 @@ fn draw_row(app: &App, row: &Row, mut pen: Pen) {
                 draw_variable(app, variable, &mut pen);
             }
         }
-        Row::Field { name, value, at, way, .. } => {
-            let age = match way {
-                Way::Input => age(app.view().t.since(*at)),
-                Way::Output => String::new(),
-            };
-            let arrow = if *way == Way::Output { "→" } else { " " };
-            pen.put(arrow, theme.dim()).column(name, names, theme.normal());
-            pen.right_column(&age, 8, theme.dim());
+        Row::Field { name, value, at, .. } => {
+            pen.put(" ", theme.normal()).column(name, names, theme.normal());
+            draw_age(app, *at, &mut pen);
             draw_value(app, value, theme.normal(), &mut pen);
+        }
+        Row::Message { name, value, at, way, .. } => {
+            let arrow = if *way == Way::Output { "→" } else { " " };
+            pen.put(arrow, theme.dim()).put(name, theme.normal()).put("  ", theme.normal());
+            if *way == Way::Input {
+                draw_age(app, *at, &mut pen);
+            }
+            pen.put(&format::message(value), theme.normal());
         }
     }
     if selected && app.focus() == Pane::Variables {
         pen.wash(theme.selected());
     }
+}
+
+fn draw_age(app: &App, at: Time, pen: &mut Pen) {
+    let age = format::duration(app.view().t.since(at).ms());
+    pen.put_right(" ", app.theme().dim()).right_column(&age, 8, app.theme().dim());
 }
 
 fn draw_variable(app: &App, variable: &Variable, pen: &mut Pen) {
@@ -68,7 +86,7 @@ fn draw_variable(app: &App, variable: &Variable, pen: &mut Pen) {
     };
     let fresh = variable.is_fresh(app.view().t);
     draw_value(app, value, if fresh { theme.fresh() } else { theme.normal() }, pen);
-    let (aside, room) = (aside(variable), pen.room().saturating_sub(2));
+    let (aside, room) = (aside(variable), pen.room().saturating_sub(3));
     match aside {
         Aside::Was(previous) if room >= 5 => {
             pen.put("  was ", theme.dim()).put(&format::value(previous), theme.dim());
@@ -106,8 +124,4 @@ fn aside(variable: &Variable) -> Aside<'_> {
         _ if variable.history.len() > 1 => Aside::Moved,
         _ => Aside::Nothing,
     }
-}
-
-fn age(age: Time) -> String {
-    format::duration(age.ms())
 }

@@ -4,13 +4,13 @@ use std::sync::Arc;
 
 use serde_json::Value;
 
+use super::mode::is_own_doing;
 use super::problem::{Origin, Problem};
-use super::{Edit, Kind, Message, Mode, Path, TAKEN_KEPT, View, World, name, owner, within};
+use super::{Edit, Kind, Message, Mode, Path, TAKEN_KEPT, View, Which, World, name, owner};
 use crate::model::Program;
 use crate::runtime::command::Command;
-use crate::runtime::record::{
-    BridgeState, Fault, Finding, Forced, Health, Load, Log, Record, Taken, What,
-};
+use crate::runtime::record::{BridgeState, Fault, Finding, Forced, Health, Load, Log, Record, Taken, What};
+use crate::ui::format;
 
 impl View {
     pub fn apply(&mut self, record: &Record) {
@@ -32,18 +32,18 @@ impl View {
             What::Log(log) => self.log(log),
             What::Error(fault) => self.fault(fault),
             What::Pause { reason } => self.pause(reason),
-            What::Resume => self.mode = Mode::Running,
+            What::Resume => (self.mode, self.actual) = (Mode::Running, None),
             What::Force { state, how } => self.force(state, *how),
             What::Restart { reason } => self.restart(reason),
-            What::Stop { reason } => self.journal.note(self.t, format!("robot stopped: {reason}")),
+            What::Stop { reason } => self.stop(reason),
             What::Skip { steps } => self.skipped += steps,
-            What::Status { rate, late } => (self.actual, self.late) = (Some(*rate), *late),
+            What::Status { rate, late } => self.status(*rate, *late),
             What::Bridge(state) => self.bridge(state),
         }
     }
 
     fn load(&mut self, load: &Load) {
-        let edit = if self.loads == 0 { Edit::Loaded } else { Edit::of_load(load) };
+        let edit = if self.loads == 0 { Edit::Loaded } else { Edit::of_load(load, self.edit.as_ref()) };
         self.loads += 1;
         if let Some(program) = &load.program {
             self.take_over(program);
@@ -51,11 +51,8 @@ impl View {
         if load.restarted {
             self.begin_again();
         }
-        self.problems = load
-            .findings
-            .iter()
-            .map(|finding| Problem::from_finding(finding, Origin::Check, self.t))
-            .collect();
+        self.problems =
+            load.findings.iter().map(|finding| Problem::from_finding(finding, Origin::Check, self.t)).collect();
         self.journal.note(self.t, note_of_edit(&edit));
         self.edit = Some(edit);
     }
@@ -78,14 +75,13 @@ impl View {
 
     fn command(&mut self, command: &Command) {
         match command {
-            Command::Rate { hz } => self.rate = *hz,
+            Command::Rate { hz } => (self.rate, self.actual) = (*hz, None),
             Command::Runstop => self.mode = Mode::Stopped,
             Command::PutAtStart { bridge } => {
                 if let Some(world) = self.world.as_mut().filter(|world| *world.bridge == **bridge) {
                     world.trail.clear();
                 }
             }
-            Command::Set { var, value } => self.journal.note(self.t, format!("{var} set to {value}")),
             _ => (),
         }
     }
@@ -100,11 +96,7 @@ impl View {
     }
 
     fn enter(&mut self, state: &Path) {
-        self.activate(state);
         self.states.entry(state.clone()).or_default().visits += 1;
-    }
-
-    fn activate(&mut self, state: &Path) {
         let Some(owner) = owner(state) else { return };
         let t = self.t;
         let machine = self.machines.entry(owner.into()).or_default();
@@ -124,42 +116,46 @@ impl View {
 
     fn take(&mut self, taken: &Taken) {
         let t = self.t;
-        self.machines.entry(taken.machine.clone()).or_default().last_taken = Some((taken.index, t));
+        let which = if taken.via.is_some() { Which::Exit } else { Which::Own(taken.index) };
+        self.machines.entry(taken.machine.clone()).or_default().last_taken = Some(which);
         if self.taken.len() == TAKEN_KEPT {
             self.taken.pop_front();
         }
         self.taken.push_back((t, taken.clone()));
         let why = taken.name.as_ref().unwrap_or(&taken.trigger);
         let text = format!("{} → {}  {why}", name(&taken.from), name(&taken.to));
+        let state = format!("{}/{}", taken.machine, name(&taken.to));
         let place = self.place_of(taken);
-        self.journal.add(t, Kind::Change, text, taken.to.clone(), place);
+        self.journal.add(t, Kind::Change, text, state.into(), place);
     }
 
+    /// An exit is written in the machine it leaves.
     fn place_of(&self, taken: &Taken) -> Option<(Path, usize)> {
         let program = self.program.as_ref()?;
-        let machine = &program[program.machine(&taken.machine)?];
+        let written_in = taken.via.as_ref().and_then(|via| owner(via)).unwrap_or(&taken.machine);
+        let machine = &program[program.machine(written_in)?];
         let span = program[*machine.transitions.get(taken.index as usize)?].span;
         let source = program.source(span);
         Some((source.name.clone(), source.line(span.start as usize)))
     }
 
+    /// Machines inside it that are gone as well have records of their own; one that was forced may run on by itself.
     fn discard(&mut self, path: &Path) {
-        for (inner, machine) in &mut self.machines {
-            if within(inner, path) {
-                machine.running = false;
-                machine.active = None;
-            }
+        if let Some(machine) = self.machines.get_mut(path) {
+            machine.running = false;
+            machine.active = None;
         }
-        for (var, variable) in &mut self.variables {
-            if var.contains('/') && within(var, path) {
-                variable.forget();
-            }
+        for (_, variable) in self.variables.iter_mut().filter(|(var, _)| owner(var) == Some(path)) {
+            variable.forget();
         }
     }
 
     fn set(&mut self, var: &Path, value: &Value, by: &Path) {
         let t = self.t;
         self.variables.entry(var.clone()).or_default().set(value, by, t);
+        if **by == *"command" {
+            self.journal.note(t, format!("{} set to {}", name(var), format::value(value)));
+        }
     }
 
     fn input(&mut self, bridge: &Path, name: &Path, value: &Value) {
@@ -190,13 +186,16 @@ impl View {
     }
 
     fn pause(&mut self, reason: &str) {
+        if !is_own_doing(reason) {
+            self.journal.note(self.t, format!("paused: {reason}"));
+        }
         if self.mode != Mode::Stopped {
             self.mode = Mode::Paused { reason: reason.into() };
         }
     }
 
+    /// The entering itself has records of its own.
     fn force(&mut self, state: &Path, how: Forced) {
-        self.activate(state);
         let verb = match how {
             Forced::Transition => "sent to",
             Forced::Jump => "jumped to",
@@ -205,15 +204,35 @@ impl View {
         self.journal.note(self.t, format!("{machine} {verb} {}", name(state)));
     }
 
+    /// One because of an edit was told with the edit.
     fn restart(&mut self, reason: &str) {
         self.begin_again();
-        self.journal.note(self.t, format!("restarted: {reason}"));
+        let told = matches!(&self.edit, Some(Edit::Taken { restarted: Some(told), .. }) if told == reason);
+        match told {
+            true => (),
+            false if is_own_doing(reason) => self.journal.note(self.t, "restarted"),
+            false => self.journal.note(self.t, format!("restarted: {reason}")),
+        }
+    }
+
+    /// The robot is stopped at every restart and runstop, which have their own marks.
+    fn stop(&mut self, reason: &str) {
+        if !matches!(reason, "restart" | "runstop") {
+            self.journal.note(self.t, format!("robot stopped: {reason}"));
+        }
     }
 
     fn begin_again(&mut self) {
         self.machines.clear();
         self.states.clear();
         self.variables.values_mut().for_each(super::Variable::forget);
+    }
+
+    /// Half a second holds few steps, so the rate is evened out.
+    fn status(&mut self, rate: f64, late: f64) {
+        let before = self.actual.filter(|before| before.is_finite());
+        self.actual = Some(before.map_or(rate, |before| before * 0.75 + rate * 0.25));
+        self.late = late;
     }
 
     fn bridge(&mut self, state: &BridgeState) {
@@ -240,10 +259,9 @@ fn note_of_edit(edit: &Edit) -> String {
         Edit::Loaded => "program loaded".into(),
         Edit::Taken { changes, restarted: None } => format!("saved: {changes}"),
         Edit::Taken { changes, restarted: Some(reason) } => format!("saved: {changes}; restarted: {reason}"),
-        Edit::Rejected { first: Some(first), .. } => {
-            format!("not taken over: line {}: {}", first.line, first.message)
-        }
-        Edit::Rejected { first: None, .. } => "not taken over".into(),
+        Edit::Mended => "mended: what runs is what the files say".into(),
+        Edit::Rejected { first, .. } if first.line == 0 => format!("{}: {}", first.file, first.message),
+        Edit::Rejected { first, .. } => format!("not taken over: line {}: {}", first.line, first.message),
     }
 }
 

@@ -8,18 +8,27 @@ pub enum Edit {
     Loaded,
     /// `changes`: `+2 states, ~1 action`.
     Taken { changes: String, restarted: Option<String> },
+    /// What couldn't be taken over is mended: what runs is what the files say.
+    Mended,
     /// The program that runs goes on; the first finding says why.
-    Rejected { first: Option<Finding>, others: usize },
+    Rejected { first: Finding, others: usize },
 }
 
 impl Edit {
-    pub fn of_load(load: &Load) -> Edit {
+    /// `before`: the outcome that this one takes the place of.
+    pub fn of_load(load: &Load, before: Option<&Edit>) -> Edit {
+        if load.changes.is_empty() && matches!(before, Some(Edit::Rejected { .. })) {
+            return Edit::Mended;
+        }
         let reason = || load.reason.clone().unwrap_or_else(|| "the program began again".into());
         Edit::Taken { changes: summary(&load.changes), restarted: load.restarted.then(reason) }
     }
 
     pub fn of_reject(findings: &[Finding]) -> Edit {
-        Edit::Rejected { first: findings.first().cloned(), others: findings.len().saturating_sub(1) }
+        match findings.first() {
+            Some(first) => Edit::Rejected { first: first.clone(), others: findings.len() - 1 },
+            None => Edit::Mended,
+        }
     }
 }
 

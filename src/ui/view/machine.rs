@@ -13,8 +13,16 @@ pub struct Machine {
     pub entered: Time,
     /// The state that spawned it; none at top level.
     pub spawned_by: Option<Path>,
-    /// The transition taken last: which of the machine's, and when.
-    pub last_taken: Option<(u32, Time)>,
+    /// The transition taken last.
+    pub last_taken: Option<Which>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Which {
+    /// Of the machine's own transitions, from 0 in the order written.
+    Own(u32),
+    /// An exit of a machine nested in it.
+    Exit,
 }
 
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -6,6 +6,7 @@ mod bridge;
 mod edit;
 mod journal;
 mod machine;
+mod mode;
 mod problem;
 mod variable;
 mod world;
@@ -16,8 +17,9 @@ use std::sync::Arc;
 pub use bridge::{Bridge, Message};
 pub use edit::Edit;
 pub use journal::{Entry, Journal, Kind};
-pub use machine::{Machine, State, Timeout};
-pub use problem::{Gravity, Problem, ProblemKey};
+pub use machine::{Machine, State, Timeout, Which};
+pub use mode::{Mode, is_own_doing};
+pub use problem::{Gravity, Origin, Problem, ProblemKey};
 pub use variable::Variable;
 pub use world::World;
 
@@ -35,7 +37,7 @@ pub struct View {
     pub mode: Mode,
     /// Steps a second, as asked for; 0: as fast as possible.
     pub rate: f64,
-    /// Steps a second, as they are.
+    /// Steps a second as they are, evened out over some seconds.
     pub actual: Option<f64>,
     /// How late the last step was, ms.
     pub late: f64,
@@ -59,16 +61,6 @@ pub struct View {
     pub world: Option<World>,
     /// How many times a program was taken over.
     pub loads: u64,
-}
-
-#[derive(Clone, Debug, PartialEq)]
-pub enum Mode {
-    Running,
-    Paused {
-        reason: String,
-    },
-    /// The robot was told to stop; nothing runs until a person resumes.
-    Stopped,
 }
 
 impl View {

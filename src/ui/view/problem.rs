@@ -47,12 +47,8 @@ pub enum Origin {
 
 impl Problem {
     pub fn from_fault(fault: &Fault, at: Time) -> Problem {
-        let key = ProblemKey {
-            code: fault.code.clone(),
-            file: fault.file.clone(),
-            line: fault.line,
-            column: fault.column,
-        };
+        let key =
+            ProblemKey { code: fault.code.clone(), file: fault.file.clone(), line: fault.line, column: fault.column };
         Problem {
             key,
             gravity: Gravity::Error,

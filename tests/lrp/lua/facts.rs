@@ -1,3 +1,5 @@
+//! What is said of a block without running it.
+
 use lrp::lua::{Checker, Facts, NameUse, known_fields, known_names};
 use serde_json::json;
 

@@ -1,3 +1,5 @@
+//! Blocks that take too long or too much are stopped.
+
 use std::time::{Duration, Instant};
 
 use lrp::lua::{Access, FailureKind, Limits, Lua, Num, Ran, Test};
@@ -180,7 +182,8 @@ fn another_thread_sees_a_block_that_can_not_be_stopped() {
     lua.global("stuck", |lua| {
         let wait = lua.create_function(move |_, ()| {
             let start = Instant::now();
-            while emergency.overdue().is_zero() && start.elapsed() < Duration::from_secs(5) {
+            // A while longer than until it is seen: then it has also been told to stop.
+            while emergency.overdue() < Duration::from_millis(20) && start.elapsed() < Duration::from_secs(5) {
                 std::hint::spin_loop();
             }
             Ok(!emergency.overdue().is_zero())

@@ -1,0 +1,154 @@
+//! Every save of a program's files becomes a command: its text is compiled here, beside the engine's thread, which only
+//! takes finished programs over. Worlds and required Lua files are watched like the program.
+
+use std::collections::BTreeSet;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::sync::mpsc::{Receiver, Sender, channel};
+use std::thread::{Builder, JoinHandle};
+
+use super::compile::{Compiler, Rejected};
+use super::engine_thread::{Commands, Library};
+use super::watch::{Saved, Watch, Watched};
+use super::{findings, modules, robots};
+use crate::model::{Program, Robot};
+use crate::runtime::Command;
+use crate::runtime::record::Finding;
+use crate::syntax::Source;
+
+/// Ends when dropped.
+pub struct Edits {
+    notes: Sender<Note>,
+    thread: Option<JoinHandle<()>>,
+}
+
+enum Note {
+    Saved(Saved),
+    /// A block has read this Lua file.
+    Required(PathBuf),
+    End,
+}
+
+/// What is heard before there is an engine to tell: files that blocks require.
+pub struct Heard {
+    notes: Sender<Note>,
+    inbox: Receiver<Note>,
+}
+
+impl Heard {
+    pub fn new() -> Heard {
+        let (notes, inbox) = channel();
+        Heard { notes, inbox }
+    }
+
+    /// The Lua files of a folder, each reported when it is read.
+    pub fn library(&self, folder: PathBuf) -> Library {
+        let notes = self.notes.clone();
+        modules::library(folder, move |path| drop(notes.send(Note::Required(path.to_path_buf()))))
+    }
+
+    /// Loads the first text of `file`, then every save of it. Fails only where no thread can be started.
+    pub fn watch(self, file: PathBuf, first: Source, robots: Vec<Robot>, commands: Commands) -> io::Result<Edits> {
+        let saves = self.notes.clone();
+        let known = Watched { path: file.clone(), text: Some(Arc::clone(&first.text)) };
+        let watch = Watch::new([known], move |saved| drop(saves.send(Note::Saved(saved))))?;
+        let inbox = self.inbox;
+        let thread = Builder::new().name("edits".to_string()).spawn(move || {
+            let desk = Desk { file, watch, commands, beside: BTreeSet::new(), required: BTreeSet::new() };
+            desk.work(first, Compiler::new(robots), &inbox);
+        })?;
+        Ok(Edits { notes: self.notes, thread: Some(thread) })
+    }
+}
+
+impl Drop for Edits {
+    fn drop(&mut self) {
+        // A thread that has ended already was heard of when it did.
+        let _ = self.notes.send(Note::End);
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
+
+struct Desk {
+    /// The program.
+    file: PathBuf,
+    watch: Watch,
+    commands: Commands,
+    /// Files that the robots read.
+    beside: BTreeSet<PathBuf>,
+    required: BTreeSet<PathBuf>,
+}
+
+impl Desk {
+    fn work(mut self, first: Source, mut compiler: Compiler, inbox: &Receiver<Note>) {
+        self.load(&mut compiler, first);
+        for note in inbox {
+            match note {
+                Note::Saved(Saved::Text { path, text }) if path == self.file => {
+                    self.load(&mut compiler, Source::new(path.display().to_string(), text));
+                }
+                Note::Saved(saved) => self.commands.send(self.told(saved)),
+                Note::Required(path) => {
+                    self.required.insert(path);
+                    self.watch_all();
+                }
+                Note::End => return,
+            }
+        }
+    }
+
+    fn load(&mut self, compiler: &mut Compiler, source: Source) {
+        let command = match compiler.compile(source) {
+            Ok(program) => {
+                self.beside = self.files_of_robots(&program);
+                self.watch_all();
+                Command::Load(Arc::new(program))
+            }
+            Err(Rejected { sources, diagnostics }) => {
+                Command::Reject { findings: findings::errors_first(&diagnostics, &sources) }
+            }
+        };
+        self.commands.send(command);
+    }
+
+    fn files_of_robots(&self, program: &Program) -> BTreeSet<PathBuf> {
+        let folder = super::live::folder(&self.file);
+        program.bridges.iter().flat_map(|bridge| robots::files(bridge, &folder)).collect()
+    }
+
+    fn watch_all(&self) {
+        let watched = |path: &PathBuf| {
+            // Without a text to compare with, the next one counts as new: at worst it is taken over again.
+            let text = std::fs::read_to_string(path).ok().map(Arc::from);
+            Watched { path: path.clone(), text }
+        };
+        let others = self.beside.iter().chain(&self.required);
+        self.watch.set_paths(std::iter::once(&self.file).chain(others).map(watched));
+    }
+
+    fn told(&self, saved: Saved) -> Command {
+        let (path, trouble) = match saved {
+            Saved::Text { path, .. } => return Command::FileChanged { file: path.display().to_string() },
+            Saved::Back { .. } => return Command::Reject { findings: Vec::new() },
+            Saved::Missing { path } => (path, "the file is gone".to_string()),
+            Saved::Unreadable { path, why } => (path, why.to_string()),
+        };
+        Command::Reject { findings: vec![of_file(&path, format!("{trouble}; the program goes on"))] }
+    }
+}
+
+/// A finding that concerns a file as a whole: it has no line.
+fn of_file(path: &Path, message: String) -> Finding {
+    Finding {
+        severity: "warning".to_string(),
+        code: "file".to_string(),
+        message,
+        help: None,
+        file: path.display().to_string().into(),
+        line: 0,
+        column: 0,
+    }
+}

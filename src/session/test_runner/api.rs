@@ -1,0 +1,116 @@
+//! A test's program and its files, as the functions of `t` handle them. Knows no program until the test loads one.
+
+use std::cell::RefCell;
+use std::collections::{HashMap, HashSet};
+use std::path::{Path, PathBuf};
+use std::rc::Rc;
+
+use mlua::Table;
+
+use super::bench::{Bench, Library, Setting};
+use super::deadline::Deadline;
+use super::failure::Complaint;
+use super::options::Options;
+use crate::runtime::Command;
+use crate::session::{loader, modules};
+use crate::syntax::Source;
+
+pub struct Api {
+    folder: PathBuf,
+    deadline: Deadline,
+    bench: RefCell<Option<Bench>>,
+    /// The loaded program's file.
+    program: RefCell<Option<PathBuf>>,
+    files: Rc<Files>,
+}
+
+/// Lua files and programs as the test has them.
+#[derive(Default)]
+struct Files {
+    /// Texts that the test put in the place of files.
+    written: RefCell<HashMap<PathBuf, String>>,
+    /// Modules that the program has required.
+    required: RefCell<HashSet<PathBuf>>,
+}
+
+impl Api {
+    /// `folder`: the test file's, from which it names files.
+    pub fn new(folder: &Path, deadline: Deadline) -> Api {
+        let (bench, program, files) = (RefCell::default(), RefCell::default(), Rc::default());
+        Api { folder: folder.to_path_buf(), deadline, bench, program, files }
+    }
+
+    /// The program under test, if there is one.
+    pub fn look<R>(&self, f: impl FnOnce(&Bench) -> R) -> Option<R> {
+        self.bench.borrow().as_ref().map(f)
+    }
+
+    pub fn with<R>(&self, f: impl FnOnce(&mut Bench) -> Result<R, Complaint>) -> Result<R, Complaint> {
+        let mut bench = self.bench.borrow_mut();
+        let none = || Complaint::new("there is no program yet: begin with `t:load(FILE)` or `t:source(TEXT)`");
+        f(bench.as_mut().ok_or_else(none)?)
+    }
+
+    pub fn command(&self, command: Command) -> Result<(), Complaint> {
+        self.with(|bench| bench.command(command))
+    }
+
+    /// Begins anew with the program of a file.
+    pub fn load(&self, file: &str, options: Option<&Table>) -> Result<(), Complaint> {
+        let path = self.folder.join(file);
+        let written = self.files.written.borrow().get(&path).cloned();
+        let source = match written {
+            Some(text) => Source::new(path.display().to_string(), text),
+            None => loader::read(&path).map_err(|why| Complaint::new(why.to_string()))?,
+        };
+        let folder = path.parent().unwrap_or(&self.folder).to_path_buf();
+        self.start(source, folder, options)?;
+        *self.program.borrow_mut() = Some(path);
+        Ok(())
+    }
+
+    /// Begins anew with a program's text, as if it were a file beside the test.
+    pub fn source(&self, text: String, options: Option<&Table>) -> Result<(), Complaint> {
+        self.program.take();
+        self.start(Source::new("program.lrp", text), self.folder.clone(), options)
+    }
+
+    fn start(&self, file: Source, folder: PathBuf, options: Option<&Table>) -> Result<(), Complaint> {
+        self.bench.take();
+        self.files.required.take();
+        let options = Options::read(options)?;
+        let library = library(Rc::clone(&self.files), folder.clone());
+        let setting = Setting { file, folder, test_folder: self.folder.clone(), library };
+        *self.bench.borrow_mut() = Some(Bench::start(setting, &options, self.deadline.clone())?);
+        Ok(())
+    }
+
+    /// Puts a text in the place of a file: of the program, which is an edit of it, or of a Lua file that it will require.
+    pub fn write(&self, file: &str, text: String) -> Result<(), Complaint> {
+        let path = self.folder.join(file);
+        if self.files.required.borrow().contains(&path) {
+            let why = format!(
+                "`{file}` has been required already, and is read only once: write it before the program asks for it"
+            );
+            return Err(Complaint::new(why));
+        }
+        self.files.written.borrow_mut().insert(path.clone(), text.clone());
+        match self.program.borrow().as_ref() == Some(&path) {
+            true => self.with(|bench| bench.edit(text)),
+            false => Ok(()),
+        }
+    }
+}
+
+fn library(files: Rc<Files>, folder: PathBuf) -> Library {
+    let disk = modules::library(folder.clone(), |_| ());
+    Box::new(move |module| {
+        let path = folder.join(module.replace('.', "/")).with_extension("lua");
+        let text = match files.written.borrow().get(&path) {
+            Some(text) => text.clone(),
+            None => disk(module)?,
+        };
+        files.required.borrow_mut().insert(path);
+        Ok(text)
+    })
+}
