@@ -10,15 +10,14 @@ use super::text;
 
 pub(super) unsafe extern "C-unwind" fn now(state: *mut ffi::lua_State) -> c_int {
     unsafe {
-        ffi::lua_pushnumber(state, desk(state).now.get());
+        ffi::lua_pushnumber(state, desk(state).now_ms());
         1
     }
 }
 
 pub(super) unsafe extern "C-unwind" fn elapsed(state: *mut ffi::lua_State) -> c_int {
     unsafe {
-        let desk = desk(state);
-        ffi::lua_pushnumber(state, desk.now.get() - desk.since.get());
+        ffi::lua_pushnumber(state, desk(state).elapsed_ms());
         1
     }
 }

@@ -28,8 +28,9 @@ pub(super) struct Chunk {
 
 pub(super) struct Desk {
     pub guard: Arc<Guard>,
-    pub now: Cell<f64>,
-    pub since: Cell<f64>,
+    /// Microseconds: only blocks that ask pay for milliseconds.
+    pub now: Cell<u64>,
+    pub since: Cell<u64>,
     pub log: Log,
     pub chunks: RefCell<HashMap<u32, Chunk>>,
     /// Where the error being raised was raised.
@@ -53,8 +54,8 @@ impl Desk {
     pub fn new(guard: Arc<Guard>) -> Self {
         Self {
             guard,
-            now: Cell::new(0.0),
-            since: Cell::new(0.0),
+            now: Cell::new(0),
+            since: Cell::new(0),
             log: Log::default(),
             chunks: RefCell::default(),
             fault: Cell::new(None),
@@ -69,6 +70,16 @@ impl Desk {
         Some((file.to_string(), first + line.saturating_sub(1)))
     }
 
+    /// Program time in milliseconds.
+    pub fn now_ms(&self) -> f64 {
+        milliseconds(self.now.get())
+    }
+
+    /// Milliseconds since the state was entered.
+    pub fn elapsed_ms(&self) -> f64 {
+        milliseconds(self.now.get()) - milliseconds(self.since.get())
+    }
+
     pub fn block(&self, spot: Option<Spot>) -> Option<Block> {
         self.chunks.borrow().get(&spot?.chunk)?.block
     }
@@ -80,6 +91,10 @@ impl Desk {
         let scope = scope.unwrap_or_default().iter().map(|name| &**name);
         nearest(name, scope.chain(known.iter().map(String::as_str))).map(str::to_owned)
     }
+}
+
+fn milliseconds(us: u64) -> f64 {
+    us as f64 / 1000.0
 }
 
 /// Puts `desk` where C functions find it.

@@ -160,16 +160,16 @@ impl Lua {
         self.slots[at] = slot;
     }
 
-    /// Sets program time, in milliseconds.
+    /// Sets program time, in microseconds.
     #[inline]
-    pub fn now(&mut self, ms: f64) {
-        self.desk.now.set(ms);
+    pub fn now(&mut self, us: u64) {
+        self.desk.now.set(us);
     }
 
-    /// Sets when the state was entered that `elapsed()` counts from, in milliseconds.
+    /// Sets when the state was entered that `elapsed()` counts from, in microseconds.
     #[inline]
-    pub fn since(&mut self, ms: f64) {
-        self.desk.since.set(ms);
+    pub fn since(&mut self, us: u64) {
+        self.desk.since.set(us);
     }
 
     #[inline]

@@ -57,6 +57,7 @@ impl Stack {
         ended.or_else(|| self.rounds(rest, calls).map(|(at, end)| (LONGEST + at, end)))
     }
 
+    #[inline(always)]
     fn round(&self, blocks: &[Block], calls: ffi::lua_CFunction) -> Option<(usize, End)> {
         let mut round = Round { guard: self.guard(), left: blocks.len(), end: None };
         let state = self.state();

@@ -111,7 +111,7 @@ impl Engine {
     #[inline]
     fn count_from_entry(&mut self, machine: Option<MachineId>) {
         let entered = machine.and_then(|machine| self.running[machine.index()].as_ref()).map(|running| running.entered);
-        self.store.lua.since(entered.unwrap_or_default().ms());
+        self.store.lua.since(entered.unwrap_or_default().0);
     }
 
     #[inline]

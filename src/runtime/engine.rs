@@ -106,7 +106,7 @@ impl Engine {
     pub fn step(&mut self, now: Time, inputs: &[Input]) {
         self.step += 1;
         self.now = now;
-        self.store.lua.now(now.ms());
+        self.store.lua.now(now.0);
         self.receive(inputs);
         let plan = Rc::clone(&self.plan);
         for index in 0..self.tops.len() {
