@@ -9,7 +9,9 @@ use std::process::ExitCode;
 pub fn finish(text: &str, code: ExitCode) -> ExitCode {
     let mut out = io::stdout().lock();
     match out.write_all(text.as_bytes()).and_then(|()| out.flush()) {
-        Err(error) if error.kind() != ErrorKind::BrokenPipe => fail(format_args!("standard output can't be written: {error}")),
+        Err(error) if error.kind() != ErrorKind::BrokenPipe => {
+            fail(format_args!("standard output can't be written: {error}"))
+        }
         _ => code,
     }
 }
