@@ -1,7 +1,7 @@
 //! The terminal is as it was, however the program ends; and while it runs, keys and frames go where they should.
 
 mod program;
-mod pty;
+pub mod pty;
 
 use std::env;
 use std::fs;

@@ -76,6 +76,8 @@ impl Pty {
     }
 
     pub fn resize(&self, cols: u16, rows: u16) {
+        // A terminal of another size lays out anew: what is seen from here on is drawn for this one.
+        self.shown.screen.lock().unwrap().screen_mut().set_size(rows, cols);
         self.master
             .resize(PtySize {
                 rows,
