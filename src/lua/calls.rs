@@ -3,6 +3,7 @@
 use serde_json::Value;
 
 use super::desk::Spot;
+use super::round::End;
 use super::stack::Trouble;
 use super::value::{self, Bounds};
 use super::{Block, Cell, Failure, FailureKind, Lua, Num, Ran, Slot, Test, message, text};
@@ -22,6 +23,35 @@ impl Lua {
         };
         self.stack.drop_results();
         result
+    }
+
+    /// Evaluates conditions in order, each with the time of a call, until one isn't false: which, and what it came to.
+    #[inline]
+    pub fn test_all(&mut self, blocks: &[Block]) -> Option<(usize, Test)> {
+        if let [block] = blocks {
+            return Some((0, self.test(*block))).filter(|(_, test)| *test != Test::False);
+        }
+        let (at, end) = self.stack.test_all(blocks)?;
+        let test = match end {
+            End::True => Test::True,
+            End::NotBoolean(kind) => Test::NotBoolean(text::type_name(kind)),
+            End::Trouble(trouble) => {
+                self.fail(blocks[at], trouble);
+                Test::Failed
+            }
+        };
+        Some((at, test))
+    }
+
+    /// Runs actions in order, each with the time of a call, until one fails: which.
+    #[inline]
+    pub fn run_all(&mut self, blocks: &[Block]) -> Option<usize> {
+        if let [block] = blocks {
+            return Some(0).filter(|_| self.run(*block) == Ran::Failed);
+        }
+        let (at, trouble) = self.stack.run_all(blocks)?;
+        self.fail(blocks[at], trouble);
+        Some(at)
     }
 
     /// Runs an action; its value is dropped.
@@ -49,6 +79,12 @@ impl Lua {
         };
         self.stack.drop_results();
         result
+    }
+
+    /// Whether the variable's value can be changed through another one that holds it too: a table or a function.
+    #[inline]
+    pub fn is_shared(&self, cell: Cell) -> bool {
+        self.stack.is_shared(cell.0)
     }
 
     /// Evaluates a block into a variable, which stays as it was if that fails.

@@ -26,6 +26,7 @@ pub struct Facts {
 /// Looks at blocks with an interpreter of its own.
 pub struct Checker {
     lua: Lua,
+    access: Access,
 }
 
 /// Bounds of a configuration.
@@ -33,13 +34,23 @@ const CONFIG: Bounds = Bounds { depth: 16, bytes: 1 << 20 };
 
 impl Default for Checker {
     fn default() -> Self {
-        Self::new()
+        Self::new(Access::Sandboxed)
     }
 }
 
 impl Checker {
-    pub fn new() -> Self {
-        Self { lua: Lua::new(Limits::default(), Access::Sandboxed, 0) }
+    /// For blocks that will have this access.
+    pub fn new(access: Access) -> Self {
+        Self { lua: Lua::new(Limits::default(), Access::Sandboxed, 0), access }
+    }
+
+    /// The names that every block has at hand.
+    pub fn at_hand(&self) -> Vec<&'static str> {
+        let besides: &[&str] = match self.access {
+            Access::Sandboxed => &[],
+            Access::System => SYSTEM,
+        };
+        known_names().iter().chain(besides).copied().collect()
     }
 
     /// The free names of a block.
@@ -77,7 +88,10 @@ impl Checker {
     }
 }
 
-/// The names every block has at hand, sorted; those of `Access::System` besides are `io` and `debug`.
+/// The names that blocks have at hand only where the command line allows it.
+pub const SYSTEM: &[&str] = &["debug", "io"];
+
+/// The names every block has at hand, sorted; those of `Access::System` besides are in [`SYSTEM`].
 pub fn known_names() -> &'static [&'static str] {
     static NAMES: LazyLock<Vec<&str>> = LazyLock::new(|| KNOWN.iter().map(|(name, _)| *name).collect());
     &NAMES

@@ -98,6 +98,19 @@ impl Guard {
         self.armed.load(Relaxed) != 0 && self.disarm()
     }
 
+    /// The call has ended and another begins; unless it is being stopped: then it goes on, to be left.
+    #[inline]
+    pub fn next(&self) -> bool {
+        compiler_fence(SeqCst);
+        if self.is_over() {
+            return false;
+        }
+        // Should the call be stopped right here, it has ended in time, and its hook takes itself away.
+        self.call.store(self.call.load(Relaxed) + 2, Relaxed);
+        compiler_fence(SeqCst);
+        true
+    }
+
     #[cold]
     fn disarm(&self) -> bool {
         // SAFETY: the state is live as long as calls are made.
@@ -270,14 +283,15 @@ fn watch(guard: &Guard) {
     let pause = (guard.limit / 10).clamp(Duration::from_millis(1), Duration::from_millis(25));
     let mut seen = (0, Instant::now());
     // When the call is signalled next, since it was first seen, and how long after that again.
-    let (mut due, mut gap) = (guard.limit, pause);
+    let first = pause * 4;
+    let (mut due, mut gap) = (guard.limit, first);
     while !guard.done.load(SeqCst) {
         std::thread::park_timeout(pause);
         let call = guard.call.load(SeqCst);
         let elapsed = seen.1.elapsed();
         if call != seen.0 {
             seen = (call, Instant::now());
-            (due, gap) = (guard.limit, pause);
+            (due, gap) = (guard.limit, first);
             guard.overdue.store(0, SeqCst);
         } else if !call.is_multiple_of(2)
             && let Some(over) = elapsed.checked_sub(guard.limit)

@@ -17,6 +17,7 @@ mod guard;
 mod log;
 mod message;
 mod pattern;
+mod round;
 mod sandbox;
 mod search;
 mod source;
@@ -29,7 +30,7 @@ mod weight;
 use std::rc::Rc;
 use std::time::Duration;
 
-pub use facts::{Checker, Facts, NameUse, known_fields, known_names};
+pub use facts::{Checker, Facts, NameUse, SYSTEM, known_fields, known_names};
 pub use failure::{Failure, FailureKind};
 pub use guard::Emergency;
 pub use log::{Level, LogLine};

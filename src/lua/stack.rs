@@ -22,7 +22,7 @@ const HANDLER: c_int = 1;
 /// The slot of the function that makes variables.
 const MAKER: c_int = 2;
 /// Free stack slots at any time, for calls into Lua's interface.
-const SPARE: c_int = 64;
+pub(super) const SPARE: c_int = 64;
 
 /// Makes functions that share nothing; the one upvalue of each is a variable.
 const MAKE: &str = "return function() local v return function() return v end end";
@@ -60,6 +60,10 @@ impl Stack {
 
     pub fn state(&self) -> *mut ffi::lua_State {
         self.state
+    }
+
+    pub fn guard(&self) -> &Guard {
+        &self.guard
     }
 
     fn grow(&mut self) {
@@ -104,12 +108,17 @@ impl Stack {
     /// Calls the function in a slot; its `results` are on the stack until dropped.
     #[inline]
     pub fn call(&self, slot: u32, results: c_int) -> Result<(), Trouble> {
-        // SAFETY: SPARE slots are free; the call is protected.
-        let status = unsafe {
-            ffi::lua_pushvalue(self.state, slot as c_int);
-            self.guard.enter();
-            ffi::lua_pcallk(self.state, 0, results, HANDLER, 0, None)
-        };
+        // SAFETY: SPARE slots are free.
+        unsafe { ffi::lua_pushvalue(self.state, slot as c_int) };
+        self.protected(0, results)
+    }
+
+    /// Calls the function below its `arguments`, all on top of the stack.
+    #[inline]
+    pub fn protected(&self, arguments: c_int, results: c_int) -> Result<(), Trouble> {
+        self.guard.enter();
+        // SAFETY: the call is protected.
+        let status = unsafe { ffi::lua_pcallk(self.state, arguments, results, HANDLER, 0, None) };
         match (self.guard.leave(), status) {
             (false, ffi::LUA_OK) => Ok(()),
             (true, ffi::LUA_OK) => Err(self.stopped_too_late()),
@@ -191,6 +200,12 @@ impl Stack {
         self.with(cell, |state| unsafe {
             (ffi::lua_type(state, -1) == ffi::LUA_TNUMBER).then(|| ffi::lua_tonumber(state, -1))
         })
+    }
+
+    #[inline]
+    pub fn is_shared(&self, cell: u32) -> bool {
+        // SAFETY: the value is on top.
+        self.with(cell, |state| unsafe { ffi::lua_type(state, -1) >= ffi::LUA_TTABLE })
     }
 
     #[inline]

@@ -1,32 +1,42 @@
 //! What the Lua in a program's blocks refers to: variables, bridges, or nothing known.
 
 use super::names::Names;
-use super::program::Program;
+use super::program::{Block, Program};
 use crate::lua::{self, Checker, NameUse};
 use crate::syntax::lua_tokens::{TokenKind, tokens};
 use crate::syntax::nearest::nearest;
 use crate::syntax::{Code, Diagnostic, Source, Span};
 
 pub fn resolve_blocks(program: &mut Program, checker: &mut Checker) {
+    let at_hand = checker.at_hand();
     let mut found = Vec::new();
     for index in 0..program.blocks.len() {
         let block = &program.blocks[index];
         let facts = match checker.check(&block.code) {
             Ok(facts) => facts,
             Err(error) => {
-                found.push(syntax_diagnostic(program.source(block.span), block.span, &error));
+                let span = error_span(program.source(block.span), block, &error, checker);
+                found.push(explained(program.source(block.span), block.span, span, &error));
                 continue;
             }
         };
         let names = Names::of(program);
         let mut uses = Vec::new();
-        for (name, access) in
-            facts.reads.iter().map(|name| (name, Access::Read)).chain(facts.writes.iter().map(|name| (name, Access::Write)))
+        let mut unknown: Vec<&str> = Vec::new();
+        for (name, access) in facts
+            .reads
+            .iter()
+            .map(|name| (name, Access::Read))
+            .chain(facts.writes.iter().map(|name| (name, Access::Write)))
         {
             match names.var(block.machine, &name.name) {
                 Some(var) if !uses.contains(&var) => uses.push(var),
                 Some(_) => {}
-                None => found.extend(unknown_name(program, index, name, access)),
+                None if unknown.contains(&&*name.name) => {}
+                None => {
+                    unknown.push(&name.name);
+                    found.extend(unknown_name(program, index, name, access, &at_hand));
+                }
             }
         }
         program.blocks[index].uses = uses;
@@ -40,11 +50,17 @@ enum Access {
     Write,
 }
 
-fn unknown_name(program: &Program, block: usize, name: &NameUse, access: Access) -> Option<Diagnostic> {
+fn unknown_name(
+    program: &Program,
+    block: usize,
+    name: &NameUse,
+    access: Access,
+    at_hand: &[&str],
+) -> Option<Diagnostic> {
     let block = &program.blocks[block];
     let is_bridge = program.bridges.iter().any(|bridge| *bridge.name == *name.name);
-    let is_at_hand = lua::known_names().contains(&&*name.name);
-    let span = place(program.source(block.span), block.span, name.line, Some(&name.name));
+    let is_at_hand = at_hand.contains(&&*name.name);
+    let span = place(program.source(block.span), block.span, name.line, Some((&name.name, Role::Name)));
     match access {
         Access::Read if is_bridge || is_at_hand => None,
         Access::Write if is_bridge || is_at_hand => {
@@ -52,13 +68,22 @@ fn unknown_name(program: &Program, block: usize, name: &NameUse, access: Access)
             Some(Diagnostic::error(Code::UnknownVariable, span, message).help("declare a variable of another name"))
         }
         _ => {
-            let mut known: Vec<String> = Names::of(program).vars(block.machine).iter().map(ToString::to_string).collect();
+            let mut known: Vec<String> =
+                Names::of(program).vars(block.machine).iter().map(ToString::to_string).collect();
             known.extend(program.bridges.iter().map(|bridge| bridge.name.to_string()));
-            known.extend(lua::known_names().iter().map(ToString::to_string));
+            known.extend(at_hand.iter().map(ToString::to_string));
             let message = format!("`{}` is not a variable in scope here", name.name);
-            let help = match nearest(&name.name, known.iter().map(String::as_str)) {
-                Some(near) => format!("did you mean `{near}`?"),
-                None => format!("declare it with `(var {} := [..])`, or use `local` inside the block", name.name),
+            let inside = program.vars.iter().find(|var| *var.name == *name.name);
+            let system = lua::SYSTEM.contains(&&*name.name);
+            let help = match (inside, nearest(&name.name, known.iter().map(String::as_str))) {
+                (Some(var), _) => {
+                    format!("`{}` is seen only in its machine: declare it further out to share it", var.path)
+                }
+                _ if system => format!("blocks can't reach files and processes; `--allow-system` lets them use `{}`", name.name),
+                (None, Some(near)) => format!("did you mean `{near}`?"),
+                (None, None) => {
+                    format!("declare it with `(var {} := [..])`, or use `local` inside the block", name.name)
+                }
             };
             Some(Diagnostic::error(Code::UnknownVariable, span, message).help(help))
         }
@@ -66,21 +91,86 @@ fn unknown_name(program: &Program, block: usize, name: &NameUse, access: Access)
 }
 
 pub fn syntax_diagnostic(source: &Source, block: Span, error: &lua::SyntaxError) -> Diagnostic {
-    let span = place(source, block, error.line, error.token.as_deref());
-    let message = error.message_in(source.line(block.start as usize) as u32);
+    let token = error.token.as_deref().map(|token| (token, Role::Any));
+    let span = match error.message.ends_with("near <eof>") {
+        true => end_of(source, block),
+        false => place(source, block, error.line, token),
+    };
+    explained(source, block, span, error)
+}
+
+/// Where a block ends too early: at what closes it.
+fn end_of(source: &Source, block: Span) -> Span {
+    let close = source.text[block.end as usize..].chars().next().map_or(0, char::len_utf8);
+    Span::new(block.file, block.end as usize, block.end as usize + close)
+}
+
+fn explained(source: &Source, block: Span, span: Span, error: &lua::SyntaxError) -> Diagnostic {
     let near = span.start.saturating_sub(block.start) as usize;
-    match smalltalk(source.slice(block), near) {
-        Some(help) => {
-            let message = format!("this looks like Smalltalk; blocks are Lua: {message}");
-            Diagnostic::error(Code::Smalltalk, span, message).help(help)
-        }
-        None => Diagnostic::error(Code::LuaSyntax, span, message),
+    let message = error.message_in(source.line(block.start as usize) as u32);
+    if let Some(help) = smalltalk(source.slice(block), near) {
+        let message = format!("this looks like Smalltalk; blocks are Lua: {message}");
+        return Diagnostic::error(Code::Smalltalk, span, message).help(help);
     }
+    if let Some(letter) = source.slice(span).chars().next().filter(|letter| !letter.is_ascii()) {
+        let message = format!("`{letter}` can stand in a string or a comment only");
+        return Diagnostic::error(Code::LuaSyntax, span, message)
+            .help("names are made of the letters a to z, digits and `_`");
+    }
+    let diagnostic = Diagnostic::error(Code::LuaSyntax, span, message);
+    match foreign(source.slice(block), near) {
+        Some(help) => diagnostic.help(help),
+        None => diagnostic,
+    }
+}
+
+/// What to write in Lua for an operator of other languages.
+fn foreign(code: &str, near: usize) -> Option<&'static str> {
+    const OPERATORS: [(&str, &str); 8] = [
+        ("+=", "Lua has no `+=`: write `x = x + 1`"),
+        ("-=", "Lua has no `-=`: write `x = x - 1`"),
+        ("*=", "Lua has no `*=`: write `x = x * 2`"),
+        ("++", "Lua has no `++`: write `x = x + 1`"),
+        ("!=", "in Lua it is written `~=`"),
+        ("!", "in Lua it is written `not`"),
+        ("&&", "in Lua it is written `and`"),
+        ("||", "in Lua it is written `or`"),
+    ];
+    let is_near = |operator: &str| {
+        let from = near.saturating_sub(operator.len() - 1);
+        (from..=near).any(|at| code.get(at..).is_some_and(|here| here.starts_with(operator)))
+    };
+    OPERATORS.iter().find(|(operator, _)| is_near(operator)).map(|&(_, help)| help)
+}
+
+/// Lua tells the line and the token, which may stand there more than once: the one meant is the first up to which the
+/// code already gives the same error.
+fn error_span(source: &Source, block: &Block, error: &lua::SyntaxError, checker: &mut Checker) -> Span {
+    let offset = block.span.start as usize;
+    let first = source.line(offset);
+    let in_line = |at: usize| source.line(offset + at) == first + error.line.max(1) as usize - 1;
+    let is_letter = error.token.as_deref().is_some_and(|token| token.starts_with("<\\"));
+    if is_letter
+        && let Some(letter) =
+            tokens(&block.code).find(|token| token.kind == TokenKind::Unknown && in_line(token.range.start))
+    {
+        return Span::new(block.span.file, offset + letter.range.start, offset + letter.range.end);
+    }
+    let candidates = tokens(&block.code)
+        .map(|token| token.range)
+        .filter(|range| in_line(range.start) && Some(&block.code[range.clone()]) == error.token.as_deref());
+    for range in candidates {
+        if checker.check(&block.code[..range.end]).is_err_and(|same| same == *error) {
+            return Span::new(block.span.file, offset + range.start, offset + range.end);
+        }
+    }
+    syntax_diagnostic(source, block.span, error).span
 }
 
 /// What to write in Lua, where a block that doesn't compile has the marks of Smalltalk.
 fn smalltalk(code: &str, near: usize) -> Option<&'static str> {
-    let ends_with_not = code.trim_end().ends_with(" not") || code.get(near..).is_some_and(|here| here.starts_with("not"));
+    let ends_with_not =
+        code.trim_end().ends_with(" not") || code.get(near..).is_some_and(|here| here.starts_with("not"));
     if code.contains(":=") {
         Some("in Lua a variable is assigned with `=`: `x = x + 1`")
     } else if code.contains("[:") {
@@ -92,28 +182,50 @@ fn smalltalk(code: &str, near: usize) -> Option<&'static str> {
     }
 }
 
+/// What a sought name is in the code.
+#[derive(Clone, Copy, PartialEq)]
+pub enum Role {
+    /// Not a field.
+    Name,
+    /// After a dot or a colon.
+    Field,
+    Any,
+}
+
 /// The span of a name in a line (from 1) of a block, or of the line's code where the name is not found.
-pub fn place(source: &Source, block: Span, line: u32, name: Option<&str>) -> Span {
+pub fn place(source: &Source, block: Span, line: u32, name: Option<(&str, Role)>) -> Span {
     let first = source.line(block.start as usize);
     let range = source.line_range(first + line.max(1) as usize - 1);
     let start = range.start.clamp(block.start as usize, block.end as usize);
     let end = range.end.clamp(start, block.end as usize);
     let at = |start: usize, end: usize| Span::new(block.file, start, end);
-    let code = &source.text[block.range()];
-    let named = name.and_then(|name| {
-        let offset = block.start as usize;
-        let mut in_line = tokens(code)
-            .filter(|token| !matches!(token.kind, TokenKind::Comment))
-            .map(|token| (token.range.start + offset, token.range.end + offset))
-            .filter(|&(from, _)| (start..end.max(start + 1)).contains(&from));
-        in_line.find(|&(from, to)| source.text.get(from..to) == Some(name))
-    });
-    match named {
-        Some((start, end)) => at(start, end),
+    match name.and_then(|name| find_name(source, block, start..end.max(start + 1), name)) {
+        Some(found) => found,
         None => {
             let line = &source.text[start..end];
             let indent = line.len() - line.trim_start().len();
             at((start + indent).min(end), start + line.trim_end().len().max(indent.min(line.len())))
         }
     }
+}
+
+/// The first such name among the tokens that begin in a range; one of another role where there is none of this.
+fn find_name(source: &Source, block: Span, range: std::ops::Range<usize>, (name, role): (&str, Role)) -> Option<Span> {
+    let code = source.slice(block);
+    let offset = block.start as usize;
+    let mut after_dot = false;
+    let mut other = None;
+    for token in tokens(code).filter(|token| !matches!(token.kind, TokenKind::Comment)) {
+        let text = &code[token.range.clone()];
+        let is_field = std::mem::replace(&mut after_dot, matches!(text, "." | ":"));
+        if text != name || !range.contains(&(offset + token.range.start)) {
+            continue;
+        }
+        let span = Span::new(block.file, offset + token.range.start, offset + token.range.end);
+        if role == Role::Any || (role == Role::Field) == is_field {
+            return Some(span);
+        }
+        other.get_or_insert(span);
+    }
+    other
 }

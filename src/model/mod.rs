@@ -6,6 +6,7 @@ pub mod change;
 pub mod description;
 pub mod diff;
 pub mod ids;
+mod link;
 pub mod names;
 pub mod program;
 pub mod resolve;

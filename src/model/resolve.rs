@@ -9,7 +9,6 @@ use super::names::Names;
 use super::program::*;
 use crate::lua::Checker;
 use crate::syntax::ast::{self, Form, MachineItem, StateItem, Tree};
-use crate::syntax::nearest::nearest;
 use crate::syntax::{Code, Diagnostic, Source, Span};
 
 /// A robot chosen on the command line; it takes the place of the program's own bridge of that name.
@@ -20,7 +19,8 @@ pub struct Robot {
 }
 
 pub fn resolve(tree: &Tree, source: Source, robots: &[Robot], checker: &mut Checker) -> Program {
-    let mut resolver = Resolver { program: Program { sources: vec![source], ..Program::default() }, ..Resolver::default() };
+    let mut resolver =
+        Resolver { program: Program { sources: vec![source], ..Program::default() }, ..Resolver::default() };
     resolver.declare(tree);
     resolver.bridges(tree, robots, checker);
     resolver.link();
@@ -30,24 +30,26 @@ pub fn resolve(tree: &Tree, source: Source, robots: &[Robot], checker: &mut Chec
     program
 }
 
-/// Names listed at most where none is near to the one that was meant.
-const LISTED: usize = 8;
-
 /// What is still to be linked refers to the tree.
 #[derive(Default)]
-struct Resolver<'t> {
-    program: Program,
-    diagnostics: Vec<Diagnostic>,
-    machines: Vec<(MachineId, &'t ast::Machine)>,
-    states: Vec<(StateId, &'t ast::State)>,
-    spawns: Vec<&'t ast::Spawn>,
+pub(super) struct Resolver<'t> {
+    pub(super) program: Program,
+    pub(super) diagnostics: Vec<Diagnostic>,
+    pub(super) machines: Vec<(MachineId, &'t ast::Machine)>,
+    pub(super) states: Vec<(StateId, &'t ast::State)>,
+    pub(super) spawns: Vec<&'t ast::Spawn>,
 }
 
 impl<'t> Resolver<'t> {
     fn declare(&mut self, tree: &'t Tree) {
+        // Variables first, here as in machines: what is inside may not hide them, wherever they are written.
+        for form in &tree.forms {
+            if let Form::Var(var) = form {
+                self.declare_global(var);
+            }
+        }
         for form in &tree.forms {
             match form {
-                Form::Var(var) => self.declare_global(var),
                 Form::Machine(machine) => {
                     if let Some(id) = self.declare_machine(machine, None) {
                         self.program.tops.push(id);
@@ -58,7 +60,7 @@ impl<'t> Resolver<'t> {
                 Form::OnResume(block) => self.declare_hook(Hook::Resume, block),
                 Form::Import(import) => self.unsupported(import.span, "import"),
                 Form::Export(export) => self.check_export(export, tree),
-                Form::Bridge(_) => {}
+                Form::Var(_) | Form::Bridge(_) => {}
             }
         }
         if self.spawns.is_empty() && !self.program.tops.is_empty() {
@@ -104,13 +106,15 @@ impl<'t> Resolver<'t> {
                 let first = self.program[first].span;
                 let message = format!("a second `{name}`; only the first one is used");
                 self.diagnostics.push(
-                    Diagnostic::error(Code::Duplicate, block.span, message).also(first, "the first one").help("put both into one block"),
+                    Diagnostic::error(Code::Duplicate, block.span, message)
+                        .also(first, "the first one")
+                        .help("put both into one block"),
                 );
             }
         }
     }
 
-    fn block(&mut self, block: &ast::Block, machine: Option<MachineId>, owner: Owner) -> BlockId {
+    pub(super) fn block(&mut self, block: &ast::Block, machine: Option<MachineId>, owner: Owner) -> BlockId {
         let id = BlockId(self.program.blocks.len() as u32);
         let code = block.text.clone();
         self.program.blocks.push(Block { code, span: block.span, machine, owner, uses: Vec::new() });
@@ -118,7 +122,7 @@ impl<'t> Resolver<'t> {
     }
 
     /// A block of the transition that is being linked.
-    fn transition_block(&mut self, block: &ast::Block, machine: MachineId) -> BlockId {
+    pub(super) fn transition_block(&mut self, block: &ast::Block, machine: MachineId) -> BlockId {
         let owner = Owner::Transition(TransitionId(self.program.transitions.len() as u32));
         self.block(block, Some(machine), owner)
     }
@@ -252,7 +256,9 @@ impl<'t> Resolver<'t> {
     fn duplicate(&mut self, what: &str, name: &ast::Name, first: Span) {
         let message = format!("{what} `{}` is declared twice; this declaration is ignored", name.text);
         self.diagnostics.push(
-            Diagnostic::error(Code::Duplicate, name.span, message).also(first, "first declared here").help("rename or remove one of them"),
+            Diagnostic::error(Code::Duplicate, name.span, message)
+                .also(first, "first declared here")
+                .help("rename or remove one of them"),
         );
     }
 
@@ -280,199 +286,16 @@ impl<'t> Resolver<'t> {
 
     fn config(&mut self, bridge: &ast::Bridge, checker: &mut Checker) -> serde_json::Value {
         let Some(block) = &bridge.config else { return serde_json::json!({}) };
-        checker.config(&block.text).unwrap_or_else(|error| {
+        checker.config(&block.text).unwrap_or_else(|mut error| {
+            // The bracket that Lua sees at the end is not in the text.
+            if !block.text.contains('}') {
+                error.message = error.message.replace("near '}'", "near ']'");
+                error.token = error.token.filter(|token| token != "}");
+            }
             let source = &self.program.sources[block.span.file.0 as usize];
             self.diagnostics.push(super::blocks::syntax_diagnostic(source, block.span, &error));
             serde_json::json!({})
         })
-    }
-
-    fn link(&mut self) {
-        for (machine, tree) in std::mem::take(&mut self.machines) {
-            for item in &tree.items {
-                if let MachineItem::Transition(transition) = item {
-                    self.link_transition(transition, machine);
-                }
-            }
-        }
-        for (state, tree) in std::mem::take(&mut self.states) {
-            self.link_state(state, tree);
-        }
-        for spawn in std::mem::take(&mut self.spawns) {
-            let spawn = self.link_spawn(spawn, None);
-            self.program.spawns.push(spawn);
-        }
-    }
-
-    fn link_state(&mut self, id: StateId, tree: &ast::State) {
-        let machine = Some(self.program[id].machine);
-        for item in &tree.items {
-            match item {
-                StateItem::OnEntry(ast::Entry::Action(block)) => {
-                    let block = self.block(block, machine, Owner::State(id));
-                    self.program.states[id.index()].onentry.push(Entry::Action(block));
-                }
-                StateItem::OnEntry(ast::Entry::Spawn(spawn)) => {
-                    let spawn = self.link_spawn(spawn, Some(id));
-                    self.program.states[id.index()].onentry.push(Entry::Spawn(spawn));
-                }
-                StateItem::Running(block) => {
-                    let block = self.block(block, machine, Owner::State(id));
-                    self.program.states[id.index()].running.push(block);
-                }
-                StateItem::OnExit(block) => {
-                    let block = self.block(block, machine, Owner::State(id));
-                    self.program.states[id.index()].onexit.push(block);
-                }
-                StateItem::Machine(_) => {}
-            }
-        }
-    }
-
-    fn link_spawn(&mut self, spawn: &ast::Spawn, by: Option<StateId>) -> Spawn {
-        let machine = Names::of(&self.program).machine(by, &spawn.machine.text);
-        let target = machine.and_then(|machine| {
-            let state = self.program.state_named(machine, &spawn.state.text);
-            if state.is_none() {
-                self.unknown_state(machine, &spawn.state);
-            }
-            state.map(|state| (machine, state))
-        });
-        if machine.is_none() {
-            let known = Names::of(&self.program).machines(by);
-            self.unknown(Code::UnknownMachine, "machine", &spawn.machine, known.iter().map(|name| &**name));
-        }
-        Spawn { machine_name: spawn.machine.text.clone(), state_name: spawn.state.text.clone(), target, span: spawn.span }
-    }
-
-    fn link_transition(&mut self, tree: &ast::Transition, machine: MachineId) {
-        let sources = self.link_sources(&tree.sources, machine);
-        let (kind, trigger) = match &tree.kind {
-            ast::TransitionKind::On(trigger) => (TransitionKind::On, self.link_trigger(trigger, machine)),
-            ast::TransitionKind::Exit(trigger) => (TransitionKind::Exit, self.link_trigger(trigger, machine)),
-            ast::TransitionKind::Eps => (TransitionKind::Eps, Trigger::Always),
-            ast::TransitionKind::Ontime(timeout) => (TransitionKind::Ontime, self.link_timeout(timeout, machine)),
-        };
-        let target = self.link_target(tree, kind, machine);
-        let id = TransitionId(self.program.transitions.len() as u32);
-        let transition = Transition {
-            machine,
-            kind,
-            sources,
-            target_name: tree.target.text.clone(),
-            target,
-            name: tree.name.as_ref().map(|name| name.text.clone()),
-            trigger,
-            span: tree.span,
-        };
-        self.attach(id, &transition);
-        self.program.transitions.push(transition);
-    }
-
-    fn link_target(&mut self, tree: &ast::Transition, kind: TransitionKind, machine: MachineId) -> Option<StateId> {
-        let owner = match kind {
-            TransitionKind::Exit => match self.program.enclosing(machine) {
-                Some(parent) => parent,
-                None => {
-                    let name = &self.program[machine].name;
-                    let message = format!("`exit` leaves a nested machine, but `{name}` is not nested in a state");
-                    self.diagnostics
-                        .push(Diagnostic::error(Code::ExitAtTop, tree.span, message).help("use `on` to go to a state of the same machine"));
-                    return None;
-                }
-            },
-            _ => machine,
-        };
-        let target = self.program.state_named(owner, &tree.target.text);
-        if target.is_none() {
-            self.unknown_state(owner, &tree.target);
-        }
-        target
-    }
-
-    /// Where a transition can be taken, it joins the lists that a step walks.
-    fn attach(&mut self, id: TransitionId, transition: &Transition) {
-        let machine = transition.machine;
-        self.program.machines[machine.index()].transitions.push(id);
-        let inert = matches!(transition.trigger, Trigger::UnknownEvent(_) | Trigger::AfterUnknown(_));
-        if transition.target.is_none() || inert {
-            return;
-        }
-        if transition.kind == TransitionKind::Exit {
-            if let Some(parent) = self.program[machine].parent {
-                self.program.states[parent.index()].exits.push(id);
-            }
-            return;
-        }
-        let states: Vec<StateId> = self.program[machine].states.iter().copied().filter(|&state| transition.leaves(state)).collect();
-        for state in states {
-            self.program.states[state.index()].outgoing.push(id);
-        }
-    }
-
-    fn link_sources(&mut self, sources: &ast::Sources, machine: MachineId) -> Sources {
-        let names: &[ast::Name] = match sources {
-            ast::Sources::Any(_) => return Sources::Any,
-            ast::Sources::One(name) => std::slice::from_ref(name),
-            ast::Sources::Some(names) => names,
-        };
-        let mut states = Vec::new();
-        for name in names {
-            match self.program.state_named(machine, &name.text) {
-                Some(state) => states.push(state),
-                None => self.unknown_state(machine, name),
-            }
-        }
-        Sources::These { names: names.iter().map(|name| name.text.clone()).collect(), states }
-    }
-
-    fn link_trigger(&mut self, trigger: &ast::Trigger, machine: MachineId) -> Trigger {
-        match trigger {
-            ast::Trigger::Block(block) => Trigger::Block(self.transition_block(block, machine)),
-            ast::Trigger::Event(name) => match Names::of(&self.program).event(machine, &name.text) {
-                Some(event) => Trigger::Event(event),
-                None => {
-                    let known = Names::of(&self.program).events(machine);
-                    self.unknown(Code::UnknownEvent, "event", name, known.iter().map(|name| &**name));
-                    Trigger::UnknownEvent(name.text.clone())
-                }
-            },
-        }
-    }
-
-    fn link_timeout(&mut self, timeout: &ast::Timeout, machine: MachineId) -> Trigger {
-        match timeout {
-            ast::Timeout::Number { ms, .. } => Trigger::After(*ms),
-            ast::Timeout::Block(block) => Trigger::AfterBlock(self.transition_block(block, machine)),
-            ast::Timeout::Variable(name) => match Names::of(&self.program).var(Some(machine), &name.text) {
-                Some(var) => Trigger::AfterVar(var),
-                None => {
-                    let known = Names::of(&self.program).vars(Some(machine));
-                    self.unknown(Code::UnknownVariable, "variable", name, known.iter().map(|name| &**name));
-                    Trigger::AfterUnknown(name.text.clone())
-                }
-            },
-        }
-    }
-
-    fn unknown_state(&mut self, machine: MachineId, name: &ast::Name) {
-        let known: Vec<Arc<str>> =
-            self.program[machine].states.iter().map(|&state| self.program[state].name.clone()).collect();
-        let what = format!("state of machine `{}`", self.program[machine].name);
-        self.unknown(Code::UnknownState, &what, name, known.iter().map(|name| &**name));
-    }
-
-    fn unknown<'a>(&mut self, code: Code, what: &str, name: &ast::Name, known: impl IntoIterator<Item = &'a str>) {
-        let known: Vec<&str> = known.into_iter().collect();
-        let help = match nearest(&name.text, known.iter().copied()) {
-            Some(near) => format!("did you mean `{near}`?"),
-            None if known.is_empty() => "there is none here yet".to_string(),
-            None if known.len() <= LISTED => format!("there is: {}", known.join(", ")),
-            None => format!("there is: {}, and {} more", known[..LISTED].join(", "), known.len() - LISTED),
-        };
-        let article = if what.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
-        let message = format!("`{}` is not {article} {what}", name.text);
-        self.diagnostics.push(Diagnostic::error(code, name.span, message).help(help));
     }
 }
 

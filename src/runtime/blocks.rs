@@ -1,20 +1,55 @@
 //! Running a program's blocks: each on its own, so that a mistake in one costs that one alone.
 
+use std::ops::Range;
 use std::sync::Arc;
 
 use super::engine::Engine;
 use super::faults::Happening;
+use super::plan::{Calls, Plan};
 use super::record::{Log, What};
 use crate::lua::{self, Failure, FailureKind, Num, Ran};
-use crate::model::blocks::place;
+use crate::model::blocks::{Role, place};
 use crate::model::*;
-use crate::syntax::{Code, Span};
+use crate::syntax::{Code, Diagnostic, Span};
 
 impl Engine {
-    pub(super) fn run_all(&mut self, blocks: &[BlockId]) {
-        for &block in blocks {
-            self.run(block);
+    /// Runs actions one after another.
+    pub(super) fn run_all(&mut self, plan: &Plan, actions: Calls) {
+        if actions.is_empty() {
+            return;
         }
+        self.count_from_entry(actions.machine);
+        let (blocks, functions) = (plan.blocks(actions), plan.functions(actions));
+        let mut part = self.store.ready_part(blocks, 0);
+        while !part.is_empty() {
+            let failed = self.store.lua.run_all(&functions[part.clone()]).map(|at| part.start + at);
+            let end = failed.map_or(part.end, |at| at + 1);
+            self.ran_all(actions, blocks, part.start..end);
+            if let Some(at) = failed {
+                self.failed(blocks[at]);
+            }
+            part = self.store.ready_part(blocks, end);
+        }
+    }
+
+    /// Which of these conditions is the first that is true: one that fails isn't, nor what is no boolean.
+    pub(super) fn first_true(&mut self, plan: &Plan, conditions: Calls) -> Option<usize> {
+        self.count_from_entry(conditions.machine);
+        let (blocks, functions) = (plan.blocks(conditions), plan.functions(conditions));
+        let mut part = self.store.ready_part(blocks, 0);
+        while !part.is_empty() {
+            let found = self.store.lua.test_all(&functions[part.clone()]).map(|(at, test)| (part.start + at, test));
+            let end = found.map_or(part.end, |(at, _)| at + 1);
+            self.ran_all(conditions, blocks, part.start..end);
+            match found {
+                Some((at, lua::Test::True)) => return Some(at),
+                Some((at, lua::Test::Failed)) => self.failed(blocks[at]),
+                Some((at, lua::Test::NotBoolean(kind))) => self.not_boolean(blocks[at], kind),
+                Some((_, lua::Test::False)) | None => {}
+            }
+            part = self.store.ready_part(blocks, end);
+        }
+        None
     }
 
     pub(super) fn run(&mut self, block: BlockId) {
@@ -23,24 +58,6 @@ impl Engine {
             self.failed(block);
         }
         self.ran(block);
-    }
-
-    pub(super) fn test(&mut self, block: BlockId) -> bool {
-        let Some(function) = self.prepare(block) else { return false };
-        let result = self.store.lua.test(function);
-        self.ran(block);
-        match result {
-            lua::Test::True => true,
-            lua::Test::False => false,
-            lua::Test::Failed => {
-                self.failed(block);
-                false
-            }
-            lua::Test::NotBoolean(kind) => {
-                self.not_boolean(block, kind);
-                false
-            }
-        }
     }
 
     /// The value of a timeout's block, in milliseconds.
@@ -78,23 +95,52 @@ impl Engine {
         self.report(var, "init".into());
     }
 
+    /// As its scope starts anew: a block that ran too long gets another chance.
+    pub(super) fn initialise_anew(&mut self, var: VarId) {
+        self.store.allow_again(self.program[var].init);
+        self.initialise(var);
+    }
+
     fn prepare(&mut self, block: BlockId) -> Option<lua::Block> {
         let function = self.store.ready(block)?;
-        let machine = self.store.block(block).machine;
-        let entered = machine.and_then(|machine| self.running[machine.index()].as_ref()).map(|running| running.entered);
-        self.store.lua.since(entered.unwrap_or_default().ms());
+        self.count_from_entry(self.store.block(block).machine);
         Some(function)
     }
 
+    /// Has `elapsed()` count from when a machine's active state was entered.
+    #[inline]
+    fn count_from_entry(&mut self, machine: Option<MachineId>) {
+        let entered = machine.and_then(|machine| self.running[machine.index()].as_ref()).map(|running| running.entered);
+        self.store.lua.since(entered.unwrap_or_default().ms());
+    }
+
+    #[inline]
+    fn ran_all(&mut self, calls: Calls, blocks: &[BlockId], these: Range<usize>) {
+        if calls.use_variables {
+            blocks[these].iter().for_each(|&block| self.note_touched(block));
+        }
+        self.note_logs();
+    }
+
     fn ran(&mut self, block: BlockId) {
+        self.note_touched(block);
+        self.note_logs();
+    }
+
+    fn note_touched(&mut self, block: BlockId) {
         if self.store.block(block).uses_variables {
             self.changes.touched(block);
         }
+    }
+
+    #[inline]
+    fn note_logs(&mut self) {
         if self.store.lua.has_logs() {
             self.take_logs();
         }
     }
 
+    #[cold]
     pub(super) fn take_logs(&mut self) {
         for line in self.store.lua.take_logs() {
             let place = line.block.and_then(|function| self.store.find(function));
@@ -111,6 +157,7 @@ impl Engine {
         }
     }
 
+    #[cold]
     fn failed(&mut self, block: BlockId) {
         let failure = self.store.lua.take_failure();
         if let Some(missing) = self.robots.no_message(&failure.message) {
@@ -118,22 +165,44 @@ impl Engine {
         }
         let (code, help) = match failure.kind {
             FailureKind::Runtime => (Code::Runtime, None),
-            FailureKind::OverTime => (Code::OverTime, Some("it is not run again until it is edited or its state is entered anew")),
-            FailureKind::OverMemory => (Code::OverMemory, Some("it is not run again until it is edited or its state is entered anew")),
+            FailureKind::OverTime => {
+                (Code::OverTime, Some("it is not run again until it is edited or its state is entered anew"))
+            }
+            FailureKind::OverMemory => {
+                (Code::OverMemory, Some("it is not run again until it is edited or its state is entered anew"))
+            }
         };
         if code != Code::Runtime {
             self.store.stop(block);
         }
         let span = self.failure_span(block, &failure);
-        self.block_fault(block, code, span, failure.message, help.map(str::to_string));
+        match self.found_before(block, &failure) {
+            Some(found) => self.block_fault(block, found.code, found.span, found.message, found.help),
+            None => self.block_fault(block, code, span, failure.message, help.map(str::to_string)),
+        }
+    }
+
+    /// An unknown name was reported when the program was read: it is the same fault, and now it has happened.
+    fn found_before(&self, block: BlockId, failure: &Failure) -> Option<Diagnostic> {
+        let name = failure.message.strip_prefix("there is no variable or function '")?.split('\'').next()?;
+        let within = self.program[block].span;
+        let is_it = |finding: &&Diagnostic| {
+            let Span { file, start, end } = finding.span;
+            finding.code == Code::UnknownVariable
+                && (file, start >= within.start, end <= within.end) == (within.file, true, true)
+                && self.program.source(within).slice(finding.span) == name
+        };
+        self.program.findings.iter().find(is_it).cloned()
     }
 
     fn failure_span(&self, block: BlockId, failure: &Failure) -> Span {
         let span = self.program[block].span;
-        place(self.program.source(span), span, failure.line, failure.token.as_deref())
+        let is_field = ["(field '", "(method '"].iter().any(|field| failure.message.contains(field));
+        let role = if is_field { Role::Field } else { Role::Name };
+        place(self.program.source(span), span, failure.line, failure.token.as_deref().map(|token| (token, role)))
     }
 
-    /// Not a mistake: the robot has not spoken yet. Said once for each input.
+    /// Not a mistake: the robot has not spoken, or not lately. Said once for each input.
     fn waiting_for_message(&mut self, block: BlockId, failure: &Failure, missing: super::robot::NoMessage) {
         // Before the first step nothing can have come.
         if self.step == 0 || !self.robots.is_news(&missing) {
@@ -142,15 +211,25 @@ impl Engine {
         let span = self.failure_span(block, failure);
         let source = self.program.source(span);
         let line = source.line(span.start as usize);
-        let message = format!("`{}.{}` has had no message yet; what needs it is skipped until one comes", missing.bridge, missing.input);
-        let log = Log { level: super::record::Level::Info, message, state: self.program.owner_path(block), file: source.name.clone(), line };
+        let super::robot::NoMessage { bridge, input, why } = &missing;
+        let message = format!("`{bridge}.{input}` {why}; what needs it is skipped until one comes");
+        let log = Log {
+            level: super::record::Level::Info,
+            message,
+            state: self.program.owner_path(block),
+            file: source.name.clone(),
+            line,
+        };
         self.rare(What::Log(log));
     }
 
+    #[cold]
     fn not_boolean(&mut self, block: BlockId, kind: &str) {
         let span = self.program[block].span;
         let (what, help) = match self.program[block].owner {
-            Owner::Event(event) => (format!("event `{}`", self.program[event].name), "compare with something: `x > 0`, `x ~= nil`"),
+            Owner::Event(event) => {
+                (format!("event `{}`", self.program[event].name), "compare with something: `x > 0`, `x ~= nil`")
+            }
             _ => ("this trigger".to_string(), "compare with something: `x > 0`, `x ~= nil`"),
         };
         let message = format!("{what} gives {kind}, not true or false; it doesn't occur");
@@ -159,7 +238,8 @@ impl Engine {
 
     pub(super) fn not_milliseconds(&mut self, transition: TransitionId, var: VarId) {
         let program = Arc::clone(&self.program);
-        let message = format!("timeout `{}` is not a number of milliseconds; the transition is not taken", program[var].name);
+        let message =
+            format!("timeout `{}` is not a number of milliseconds; the transition is not taken", program[var].name);
         let state = program[program[transition].machine].path.clone();
         self.fault(Code::NotMilliseconds, program[transition].span, message, None, state);
     }

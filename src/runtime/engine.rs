@@ -67,7 +67,7 @@ impl Engine {
     pub fn new(options: Options) -> Engine {
         Engine {
             program: Arc::default(),
-            plan: Rc::new(Plan::of(&Program::default())),
+            plan: Rc::default(),
             store: Store::new(Lua::new(options.limits, options.access, options.seed)),
             robots: Robots::default(),
             running: Vec::new(),
@@ -126,14 +126,27 @@ impl Engine {
     /// What a step or a command leaves to be said at its end: changed variables, outputs, faults that went on.
     pub(super) fn finish(&mut self) {
         self.report_changes();
+        if !self.robots.is_empty() {
+            self.report_outputs();
+        }
+        if self.faults.any_unreported() {
+            self.report_faults();
+        }
+    }
+
+    fn report_outputs(&mut self) {
         for (bridge, name, value) in self.robots.take_outputs(&self.store.lua) {
             self.rare(What::Output { bridge, name, value });
         }
+    }
+
+    fn report_faults(&mut self) {
         for fault in self.faults.due(self.now) {
             self.rare(What::Error(fault));
         }
     }
 
+    #[inline]
     pub(super) fn note(&mut self, note: Note) {
         self.notes.push(note);
     }

@@ -63,11 +63,13 @@ impl Faults {
         Some(fault)
     }
 
+    /// Whether any fault went on since it was last reported.
+    pub fn any_unreported(&self) -> bool {
+        self.unreported > 0
+    }
+
     /// Faults that went on and were last reported long enough ago.
     pub fn due(&mut self, now: Time) -> Vec<Fault> {
-        if self.unreported == 0 {
-            return Vec::new();
-        }
         let mut due = Vec::new();
         for entry in &mut self.known {
             if entry.fault.count > entry.reported && now.since(entry.reported_at) >= REPORT_EVERY {
@@ -98,4 +100,7 @@ impl Faults {
         self.known.iter().map(|entry| entry.fault.clone()).collect()
     }
 
+    pub fn reported(&self) -> impl Iterator<Item = Fault> + '_ {
+        self.known.iter().map(|entry| Fault { count: entry.reported, ..entry.fault.clone() })
+    }
 }

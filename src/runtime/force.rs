@@ -3,6 +3,7 @@
 use std::rc::Rc;
 
 use super::engine::Engine;
+use super::machine::Spawner;
 use super::plan::{EntryItem, Plan};
 use super::record::{Forced, What};
 use crate::model::*;
@@ -18,13 +19,16 @@ impl Engine {
         self.rare(What::Force { state: self.program[target].path.clone(), how });
         let plan = Rc::clone(&self.plan);
         let Way { first: (machine, state), then } = self.way_to(target);
-        let running = self.running[machine.index()].is_some();
+        let running = self.runs(machine);
         match how {
             Forced::Transition if running => {
                 self.leave(&plan, machine);
                 self.enter_on_way(&plan, machine, state, &then);
             }
-            Forced::Transition => self.spawn(&plan, machine, state, None),
+            Forced::Transition => {
+                self.start(machine, state, None);
+                self.enter(&plan, machine, state);
+            }
             Forced::Jump => {
                 if running {
                     self.discard_nested(machine);
@@ -42,7 +46,7 @@ impl Engine {
         let wanted = (program[target].machine, target);
         let mut then = vec![wanted];
         while let Some(&(machine, _)) = then.last() {
-            if self.running[machine.index()].is_some() {
+            if self.runs(machine) {
                 let first = then.pop().unwrap_or(wanted);
                 then.reverse();
                 return Way { first, then };
@@ -61,16 +65,15 @@ impl Engine {
         let next = then.first().copied();
         for &item in plan.onentry(state) {
             match item {
-                EntryItem::Action(block) => self.run(block),
-                EntryItem::Spawn(Some((nested, start))) => match next {
-                    Some((wanted, _)) if wanted == nested => self.spawn_on_way(plan, state, then),
-                    _ => self.spawn(plan, nested, start, Some(state)),
+                EntryItem::Actions(actions) => self.run_all(plan, actions),
+                EntryItem::Spawn(index, (nested, start)) => match next {
+                    Some((wanted, _)) if wanted == nested && !self.runs(nested) => self.spawn_on_way(plan, state, then),
+                    _ => self.spawn(plan, nested, start, Spawner::Entry { state, index }),
                 },
-                EntryItem::Spawn(None) => {}
             }
         }
         if let Some((wanted, _)) = next
-            && self.running[wanted.index()].is_none()
+            && !self.runs(wanted)
         {
             self.spawn_on_way(plan, state, then);
         }

@@ -14,6 +14,22 @@ pub(super) struct Fired {
     via: Option<StateId>,
 }
 
+/// What spawns a machine: a spawn statement at top level, or one of a state's onentry items.
+#[derive(Clone, Copy)]
+pub(super) enum Spawner {
+    Top { index: usize },
+    Entry { state: StateId, index: u32 },
+}
+
+impl Spawner {
+    fn state(self) -> Option<StateId> {
+        match self {
+            Spawner::Top { .. } => None,
+            Spawner::Entry { state, .. } => Some(state),
+        }
+    }
+}
+
 impl Engine {
     pub(super) fn step_machine(&mut self, plan: &Plan, machine: MachineId) {
         let Some(state) = self.active_state(machine) else { return };
@@ -22,10 +38,14 @@ impl Engine {
             self.settle(plan, machine);
             return;
         }
-        self.run_all(plan.running(state));
+        self.run_all(plan, plan.running(state));
         for index in 0..self.nested_count(machine) {
             self.step_machine(plan, self.nested(machine, index));
         }
+    }
+
+    pub(super) fn runs(&self, machine: MachineId) -> bool {
+        self.running[machine.index()].is_some()
     }
 
     pub(super) fn active_state(&self, machine: MachineId) -> Option<StateId> {
@@ -43,15 +63,16 @@ impl Engine {
     /// The first transition that may be taken now: the machine's own, then exits of machines written in the state.
     fn firing(&mut self, plan: &Plan, machine: MachineId, state: StateId) -> Option<Fired> {
         for guard in plan.outgoing(state) {
-            if self.holds(guard, machine) {
-                return self.fired(guard.transition, None);
+            if let Some(index) = self.holds(plan, guard, machine) {
+                return self.fired(plan.transition(guard, index), None);
             }
         }
         for guard in plan.exits(state) {
-            let nested = self.program[guard.transition].machine;
+            let transition = plan.transition(guard, 0);
+            let nested = self.program[transition].machine;
             let Some(inner) = self.active_state(nested) else { continue };
-            if self.program[guard.transition].leaves(inner) && self.holds(guard, nested) {
-                return self.fired(guard.transition, Some(inner));
+            if self.program[transition].leaves(inner) && self.holds(plan, guard, nested).is_some() {
+                return self.fired(transition, Some(inner));
             }
         }
         None
@@ -62,20 +83,23 @@ impl Engine {
         Some(Fired { transition, target, via })
     }
 
-    fn holds(&mut self, guard: &Guard, machine: MachineId) -> bool {
-        match guard.test {
+    /// Which of a guard's transitions may be taken, if any.
+    #[inline]
+    fn holds(&mut self, plan: &Plan, guard: &Guard, machine: MachineId) -> Option<usize> {
+        let due = match guard.test {
+            Test::Blocks(conditions) => return self.first_true(plan, conditions),
             Test::Always => true,
-            Test::Block(block) => self.test(block),
             Test::After(timeout) => self.since_entry(machine) >= timeout,
-            Test::AfterVar(var, transition) => {
+            Test::AfterVar(var) => {
                 let ms = self.store.lua.number_in(self.store.cell(var));
                 if ms.is_none() {
-                    self.not_milliseconds(transition, var);
+                    self.not_milliseconds(plan.transition(guard, 0), var);
                 }
                 ms.is_some_and(|ms| self.is_due(machine, ms))
             }
             Test::AfterBlock(block) => self.milliseconds(block).is_some_and(|ms| self.is_due(machine, ms)),
-        }
+        };
+        due.then_some(0)
     }
 
     /// Compared in the unit of the text, so that nothing is lost to rounding; nan is never due.
@@ -105,14 +129,18 @@ impl Engine {
         }
         if let Some(state) = self.active_state(machine) {
             self.note(Note::Exit(state));
-            self.run_all(plan.onexit(state));
+            self.run_all(plan, plan.onexit(state));
         }
     }
 
+    #[inline]
     pub(super) fn discard_nested(&mut self, machine: MachineId) {
-        if self.nested_count(machine) == 0 {
-            return;
+        if self.nested_count(machine) > 0 {
+            self.discard_all_nested(machine);
         }
+    }
+
+    fn discard_all_nested(&mut self, machine: MachineId) {
         let nested = self.running[machine.index()].as_mut().map(|running| std::mem::take(&mut running.nested));
         for machine in nested.unwrap_or_default() {
             self.discard(machine);
@@ -133,9 +161,10 @@ impl Engine {
         self.arrive(machine, state);
         for &item in plan.onentry(state) {
             match item {
-                EntryItem::Action(block) => self.run(block),
-                EntryItem::Spawn(Some((machine, start))) => self.spawn(plan, machine, start, Some(state)),
-                EntryItem::Spawn(None) => {}
+                EntryItem::Actions(actions) => self.run_all(plan, actions),
+                EntryItem::Spawn(index, (machine, start)) => {
+                    self.spawn(plan, machine, start, Spawner::Entry { state, index });
+                }
             }
         }
     }
@@ -154,14 +183,15 @@ impl Engine {
     }
 
     /// A block that ran too long gets another chance when its state is entered anew.
-    fn allow_blocks_of(&mut self, state: StateId) {
+    fn allow_blocks_of(&mut self, entered: StateId) {
         let program = std::sync::Arc::clone(&self.program);
-        let state = &program[state];
+        let state = &program[entered];
         let actions = state.onentry.iter().filter_map(|entry| match entry {
             Entry::Action(block) => Some(*block),
             Entry::Spawn(_) => None,
         });
-        let guards = state.outgoing.iter().chain(&state.exits).filter_map(|&id| match program[id].trigger {
+        let own = program[state.machine].transitions.iter().filter(|&&id| program[id].leaves(entered));
+        let guards = own.chain(&state.exits).filter_map(|&id| match program[id].trigger {
             Trigger::Event(event) => Some(program[event].block),
             Trigger::Block(block) | Trigger::AfterBlock(block) => Some(block),
             _ => None,
@@ -171,12 +201,12 @@ impl Engine {
         }
     }
 
-    /// Starts a machine in a state; `by` is the state whose onentry does it, none at top level.
-    pub(super) fn spawn(&mut self, plan: &Plan, machine: MachineId, state: StateId, by: Option<StateId>) {
+    /// Starts a machine in a state.
+    pub(super) fn spawn(&mut self, plan: &Plan, machine: MachineId, state: StateId, spawner: Spawner) {
         if self.running[machine.index()].is_some() {
-            return self.already_running(machine, by);
+            return self.already_running(machine, spawner);
         }
-        self.start(machine, state, by);
+        self.start(machine, state, spawner.state());
         self.enter(plan, machine, state);
     }
 
@@ -190,7 +220,7 @@ impl Engine {
         }
         self.note(Note::Spawn { machine, by });
         for index in 0..self.program[machine].vars.len() {
-            self.initialise(self.program[machine].vars[index]);
+            self.initialise_anew(self.program[machine].vars[index]);
         }
     }
 
@@ -204,26 +234,24 @@ impl Engine {
         if self.firing(plan, machine, state).is_some() {
             return;
         }
-        self.run_all(plan.running(state));
+        self.run_all(plan, plan.running(state));
         for index in 0..self.nested_count(machine) {
             self.settle(plan, self.nested(machine, index));
         }
     }
 
-    fn already_running(&mut self, machine: MachineId, by: Option<StateId>) {
+    fn already_running(&mut self, machine: MachineId, spawner: Spawner) {
         let program = std::sync::Arc::clone(&self.program);
-        let spawns_it = |spawn: &&Spawn| spawn.target.is_some_and(|(target, _)| target == machine);
-        let spawn = match by {
-            Some(state) => program[state].onentry.iter().find_map(|entry| match entry {
-                Entry::Spawn(spawn) => Some(spawn).filter(spawns_it),
-                Entry::Action(_) => None,
-            }),
-            None => program.spawns.iter().find(spawns_it),
+        let span = match spawner {
+            Spawner::Top { index } => program.spawns[index].span,
+            Spawner::Entry { state, index } => match &program[state].onentry[index as usize] {
+                Entry::Spawn(spawn) => spawn.span,
+                Entry::Action(block) => program[*block].span,
+            },
         };
-        let span = spawn.map_or(program[machine].span, |spawn| spawn.span);
         let message = format!("machine `{}` is running already; it goes on undisturbed", program[machine].path);
         let help = "a machine runs at most once: write a second machine, or leave the state that spawned it first";
-        let state = by.map(|state| program[state].path.clone()).unwrap_or_default();
+        let state = spawner.state().map(|state| program[state].path.clone()).unwrap_or_default();
         self.fault(Code::AlreadyRunning, span, message, Some(help.to_string()), state);
     }
 }

@@ -14,6 +14,7 @@ mod obey;
 mod patch;
 mod picture;
 mod plan;
+mod reach;
 pub mod record;
 mod robot;
 mod store;

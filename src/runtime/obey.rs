@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::command::Command;
 use super::engine::Engine;
+use super::machine::Spawner;
 use super::record::{Forced, Level, Log, What};
 use crate::model::names::Names;
 use crate::model::{StateId, VarId};
@@ -92,11 +93,11 @@ impl Engine {
         self.running = program.machines.iter().map(|_| None).collect();
         self.visits = vec![0; program.states.len()];
         for &var in &program.globals {
-            self.initialise(var);
+            self.initialise_anew(var);
         }
-        for spawn in &program.spawns {
+        for (index, spawn) in program.spawns.iter().enumerate() {
             if let Some((machine, state)) = spawn.target {
-                self.spawn(&plan, machine, state, None);
+                self.spawn(&plan, machine, state, Spawner::Top { index });
             }
         }
         for index in 0..self.tops.len() {

@@ -5,6 +5,7 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 use super::engine::{Engine, Running};
+use super::machine::Spawner;
 use super::plan::Plan;
 use super::record::What;
 use crate::model::blocks::syntax_diagnostic;
@@ -27,7 +28,8 @@ impl Engine {
             }
         }
         let still = self.faults.edited(self.now, |code, span| moved(&old, &new, code, span));
-        self.plan = Rc::new(Plan::of(&new));
+        self.plan = Rc::new(Plan::of(&new, &self.store));
+        self.changes.follow(&new);
         self.program = Arc::new(new);
         let load = self.load_record(changes, reason.clone());
         self.rare(What::Load(load));
@@ -73,7 +75,10 @@ impl Engine {
         let mut visits = vec![0; new.states.len()];
         for (index, was) in self.running.iter().enumerate() {
             let Some(was) = was else { continue };
-            let (Some(machine), Some(&state)) = (follow(&MachineId(index as u32)), states.get(&*old[was.state].path)) else { continue };
+            let (Some(machine), Some(&state)) = (follow(&MachineId(index as u32)), states.get(&*old[was.state].path))
+            else {
+                continue;
+            };
             let nested = was.nested.iter().filter_map(follow).collect();
             running[machine.index()] = Some(Running { state, entered: was.entered, nested });
         }
@@ -89,7 +94,8 @@ impl Engine {
 
     fn report_findings(&mut self) {
         let program = Arc::clone(&self.program);
-        for Diagnostic { code, span, message, help, .. } in program.findings.iter().filter(|finding| finding.is_error()) {
+        for Diagnostic { code, span, message, help, .. } in program.findings.iter().filter(|finding| finding.is_error())
+        {
             let state = enclosing_path(&program, *span);
             self.fault(*code, *span, message.clone(), help.clone(), state);
         }
@@ -103,12 +109,12 @@ impl Engine {
         }
         let plan = Rc::clone(&self.plan);
         let mut spawned = Vec::new();
-        for spawn in &program.spawns {
+        for (index, spawn) in program.spawns.iter().enumerate() {
             if let Some((machine, state)) = spawn.target
-                && self.running[machine.index()].is_none()
+                && !self.runs(machine)
                 && !spawned_before(old, &program[machine].path)
             {
-                self.spawn(&plan, machine, state, None);
+                self.spawn(&plan, machine, state, Spawner::Top { index });
                 spawned.push(machine);
             }
         }
@@ -150,7 +156,10 @@ impl Engine {
         let program = Arc::clone(&self.program);
         let place = |machine: &MachineId| {
             let spawns = program.spawns.iter();
-            spawns.map(|spawn| spawn.target).position(|target| target.is_some_and(|(target, _)| target == *machine)).unwrap_or(usize::MAX)
+            spawns
+                .map(|spawn| spawn.target)
+                .position(|target| target.is_some_and(|(target, _)| target == *machine))
+                .unwrap_or(usize::MAX)
         };
         self.tops.sort_by_key(place);
     }
@@ -161,15 +170,30 @@ impl Engine {
         let Some(state) = self.active_state(machine) else { return Vec::new() };
         let Some(was) = old.state(&program[state].path) else { return Vec::new() };
         let mut spawned = Vec::new();
-        for (before, after) in old[was].onentry.iter().zip(&program[state].onentry) {
-            if let (Entry::Spawn(Spawn { target: None, .. }), Entry::Spawn(Spawn { target: Some((machine, start)), .. })) = (before, after)
-                && self.running[machine.index()].is_none()
+        for (index, (before, after)) in (0..).zip(old[was].onentry.iter().zip(&program[state].onentry)) {
+            if let (
+                Entry::Spawn(Spawn { target: None, .. }),
+                Entry::Spawn(Spawn { target: Some((machine, start)), .. }),
+            ) = (before, after)
+                && !self.runs(*machine)
             {
-                self.spawn(plan, *machine, *start, Some(state));
+                self.spawn(plan, *machine, *start, Spawner::Entry { state, index });
                 spawned.push(*machine);
             }
         }
+        self.order_nested(machine, state);
         spawned
+    }
+
+    /// Nested machines take their steps in the order of the spawn statements, however late one succeeded.
+    fn order_nested(&mut self, machine: MachineId, state: StateId) {
+        let items = &self.program[state].onentry;
+        let spawns =
+            |item: &Entry, machine| matches!(item, Entry::Spawn(Spawn { target: Some((it, _)), .. }) if *it == machine);
+        let place = |machine: &MachineId| items.iter().position(|item| spawns(item, *machine)).unwrap_or(usize::MAX);
+        if let Some(running) = &mut self.running[machine.index()] {
+            running.nested.sort_by_key(place);
+        }
     }
 }
 
@@ -179,15 +203,45 @@ fn spawned_before(old: &Program, machine: &str) -> bool {
 
 /// Where a fault of the old program stands in the new one, when it is a block's and the block is the same.
 fn moved(old: &Program, new: &Program, code: Code, span: Span) -> Option<(Span, Source)> {
-    let happens_while_running = matches!(code, Code::Runtime | Code::NotBoolean | Code::OverTime | Code::OverMemory | Code::NotMilliseconds);
-    let holds = |block: &&Block| block.span.file == span.file && block.span.start <= span.start && span.end <= block.span.end;
+    let happens_while_running =
+        matches!(code, Code::Runtime | Code::NotBoolean | Code::OverTime | Code::OverMemory | Code::NotMilliseconds);
+    if code == Code::AlreadyRunning {
+        let now = spawn_moved(old, new, span)?;
+        return Some((now, new.source(now).clone()));
+    }
+    let holds =
+        |block: &&Block| block.span.file == span.file && block.span.start <= span.start && span.end <= block.span.end;
     let was = old.blocks.iter().find(holds).filter(|_| happens_while_running)?;
     let owner = old.owner_path_of(was);
-    let now = new.blocks.iter().find(|block| block.code == was.code && new.owner_path_of(block) == owner)?;
+    let twins = |program: &Program| -> Vec<Span> {
+        let same = |block: &&Block| block.code == was.code && program.owner_path_of(block) == owner;
+        program.blocks.iter().filter(same).map(|block| block.span).collect()
+    };
+    let nth = twins(old).iter().position(|&span| span == was.span)?;
+    let now = *twins(new).get(nth)?;
     let offset = (span.start - was.span.start) as usize;
-    let start = now.span.start as usize + offset;
-    let span = Span::new(now.span.file, start, start + (span.end - span.start) as usize);
+    let start = now.start as usize + offset;
+    let span = Span::new(now.file, start, start + (span.end - span.start) as usize);
     Some((span, new.source(span).clone()))
+}
+
+/// Where the spawn of a place in the old program stands in the new one.
+fn spawn_moved(old: &Program, new: &Program, span: Span) -> Option<Span> {
+    let spawns = |program: &Program| -> Vec<(Arc<str>, Spawn)> {
+        let entries = program
+            .states
+            .iter()
+            .flat_map(|state| state.onentry.iter().map(|entry| (state.path.clone(), entry.clone())));
+        let nested = entries.filter_map(|(state, entry)| match entry {
+            Entry::Spawn(spawn) => Some((state, spawn)),
+            Entry::Action(_) => None,
+        });
+        let tops = program.spawns.iter().map(|spawn| (Arc::default(), spawn.clone()));
+        tops.chain(nested).collect()
+    };
+    let (state, was) = spawns(old).into_iter().find(|(_, spawn)| spawn.span == span)?;
+    let same = |it: &Spawn| it.machine_name == was.machine_name && it.state_name == was.state_name;
+    spawns(new).into_iter().find(|(at, spawn)| *at == state && same(spawn)).map(|(_, spawn)| spawn.span)
 }
 
 /// The innermost state or machine that a place lies in.
@@ -195,6 +249,7 @@ fn enclosing_path(program: &Program, span: Span) -> Arc<str> {
     let around = |outer: Span| outer.file == span.file && outer.start <= span.start && span.end <= outer.end;
     let machines = program.machines.iter().map(|machine| (machine.span, &machine.path));
     let states = program.states.iter().map(|state| (state.span, &state.path));
-    let innermost = machines.chain(states).filter(|(outer, _)| around(*outer)).min_by_key(|(outer, _)| outer.end - outer.start);
+    let innermost =
+        machines.chain(states).filter(|(outer, _)| around(*outer)).min_by_key(|(outer, _)| outer.end - outer.start);
     innermost.map(|(_, path)| path.clone()).unwrap_or_default()
 }

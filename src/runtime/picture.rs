@@ -3,6 +3,7 @@
 use serde_json::Value;
 
 use super::engine::Engine;
+use super::record::Fault;
 use super::time::Time;
 use crate::model::*;
 
@@ -50,6 +51,11 @@ impl Engine {
     pub fn entered(&self, machine: &str) -> Option<Time> {
         let machine = self.program.machine(machine)?;
         Some(self.running[machine.index()].as_ref()?.entered)
+    }
+
+    /// What went wrong since the last edit that concerned it, as it was last reported.
+    pub fn faults(&self) -> impl Iterator<Item = Fault> + '_ {
+        self.faults.reported()
     }
 
     pub fn is_paused(&self) -> bool {

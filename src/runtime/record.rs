@@ -60,6 +60,15 @@ pub enum What {
     Bridge(BridgeState),
 }
 
+impl What {
+    /// What `kind` says in a record, in the order of the variants.
+    pub const KINDS: &[&str] = &[
+        "load", "reject", "command", "spawn", "enter", "exit", "transition", "discard",
+        "set", "input", "output", "call", "reply", "log", "error", "pause",
+        "resume", "force", "restart", "stop", "skip", "status", "bridge",
+    ];
+}
+
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Load {
     pub changes: Vec<Change>,
@@ -169,6 +178,7 @@ pub enum Forced {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BridgeState {
     pub bridge: Path,
+    /// `kind` is what the record is.
     #[serde(rename = "type")]
     pub kind: Path,
     pub state: Health,

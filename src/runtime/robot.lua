@@ -6,6 +6,7 @@ local latest = {}   -- input -> its last message
 local came = {}     -- input -> program time in ms at which that came
 local asked         -- the last input that a block asked for while it had no message
 local outbox = {}   -- { output, message } in the order sent
+local heard = {}    -- input -> true once a message came, though it may have been forgotten since
 local senders = {}  -- output -> the function that sends it
 
 local function names(ports)
@@ -46,6 +47,15 @@ local function filled(output, defaults, given, path)
   return message
 end
 
+-- A message is what it was when it was sent, whatever becomes of its table.
+local function copied(value, depth)
+  if type(value) ~= "table" then return value end
+  if depth == 0 then error("a message can't be nested so deeply", 0) end
+  local copy = {}
+  for key, inner in pairs(value) do copy[key] = copied(inner, depth - 1) end
+  return copy
+end
+
 local function positioned(problem, level)
   error(problem, level + 1)
 end
@@ -66,6 +76,9 @@ local function sender(output)
       if not fine then positioned(result, 2) end
       message = result
     end
+    local fine, result = pcall(copied, message, 16)
+    if not fine then positioned(("`%s.%s`: %s"):format(name, output, result), 2) end
+    message = result
     outbox[#outbox + 1] = { output, message }
   end
 end
@@ -77,7 +90,7 @@ local function fresh(input)
 end
 
 local function is_input(key)
-  return offer.inputs[key] ~= nil or latest[key] ~= nil
+  return offer.inputs[key] ~= nil or heard[key] ~= nil
 end
 
 local function age(_, input)
@@ -120,7 +133,7 @@ local robot = setmetatable({}, {
 
 local engine = {
   receive = function(input, message, time)
-    latest[input], came[input] = message, time
+    latest[input], came[input], heard[input] = message, time, true
   end,
   take = function()
     if #outbox == 0 then return nil end
@@ -128,8 +141,13 @@ local engine = {
     outbox = {}
     return sent
   end,
-  -- The input that a block asked for last, in vain.
-  missed = function() return asked end,
+  -- The input that a block asked for last, and why that is in vain; nothing where it isn't.
+  missed = function()
+    if asked == nil or fresh(asked) ~= nil then return nil end
+    if came[asked] then return asked, "has had no message lately" end
+    if heard[asked] then return asked, "was forgotten and has had no message since" end
+    return asked, "has had no message yet"
+  end,
   offer = function(changed) offer = changed; senders = {} end,
 }
 

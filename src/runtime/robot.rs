@@ -21,7 +21,7 @@ const OBJECT: &str = include_str!("robot.lua");
 pub(super) struct Robots {
     robots: Vec<Robot>,
     /// Inputs of which it has been said that no message came yet.
-    said: HashSet<(Arc<str>, String)>,
+    said: HashSet<NoMessage>,
 }
 
 struct Robot {
@@ -33,9 +33,12 @@ struct Robot {
 }
 
 /// A block needed a message that hasn't come.
+#[derive(Clone, PartialEq, Eq, Hash)]
 pub(super) struct NoMessage {
     pub bridge: Arc<str>,
     pub input: String,
+    /// `has had no message yet`
+    pub why: String,
 }
 
 impl Robots {
@@ -69,6 +72,10 @@ impl Robots {
         });
     }
 
+    pub fn is_empty(&self) -> bool {
+        self.robots.is_empty()
+    }
+
     pub fn receive(&self, lua: &Lua, input: &Input, now: Time) {
         let Some(robot) = self.robots.iter().find(|robot| robot.name == input.bridge) else { return };
         if let Ok(message) = to_lua(lua.mlua(), &input.value) {
@@ -97,18 +104,17 @@ impl Robots {
             return None;
         }
         for robot in &self.robots {
-            let input = robot.missed.call::<Option<String>>(()).ok().flatten();
-            if let Some(input) = input.filter(|input| message.contains(&format!("'{input}'"))) {
-                let bridge = robot.name.clone();
-                return Some(NoMessage { bridge, input });
+            let Ok((Some(input), Some(why))) = robot.missed.call::<(Option<String>, Option<String>)>(()) else { continue };
+            if message.contains(&format!("'{input}'")) {
+                return Some(NoMessage { bridge: robot.name.clone(), input, why });
             }
         }
         None
     }
 
-    /// Whether it is still to be said that an input has had no message.
+    /// Whether it is still to be said that an input has no message.
     pub fn is_news(&mut self, missing: &NoMessage) -> bool {
-        self.said.insert((missing.bridge.clone(), missing.input.clone()))
+        self.said.insert(missing.clone())
     }
 }
 

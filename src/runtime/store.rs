@@ -1,7 +1,8 @@
 //! The Lua side of a program: its variables as cells and its blocks as compiled functions. Both outlive an edit that
 //! doesn't concern them.
 
-use std::collections::HashMap;
+use std::collections::{HashMap, VecDeque};
+use std::ops::Range;
 use std::sync::Arc;
 
 use crate::lua::{self, Cell, Lua, SyntaxError};
@@ -58,6 +59,18 @@ impl Store {
         compiled.lua.filter(|_| !compiled.stopped)
     }
 
+    /// From `from` on, the next of the blocks to be run: all that are left, or one at a time while any block is stopped.
+    #[inline]
+    pub fn ready_part(&self, blocks: &[BlockId], from: usize) -> Range<usize> {
+        if self.any_stopped() { self.ready_one(blocks, from) } else { from..blocks.len() }
+    }
+
+    #[cold]
+    fn ready_one(&self, blocks: &[BlockId], from: usize) -> Range<usize> {
+        let next = (from..blocks.len()).find(|&index| self.ready(blocks[index]).is_some());
+        next.map_or(blocks.len()..blocks.len(), |index| index..index + 1)
+    }
+
     pub fn stop(&mut self, block: BlockId) {
         let compiled = &mut self.blocks[block.index()];
         self.stopped += usize::from(!compiled.stopped);
@@ -90,15 +103,15 @@ impl Store {
     }
 
     fn take_over_blocks(&mut self, new: &Program) -> Vec<Uncompiled> {
-        let mut kept: HashMap<Key, Vec<Compiled>> = HashMap::new();
+        let mut kept: HashMap<Key, VecDeque<Compiled>> = HashMap::new();
         for (key, compiled) in self.keys.drain(..).zip(self.blocks.drain(..)) {
-            kept.entry(key).or_default().push(compiled);
+            kept.entry(key).or_default().push_back(compiled);
         }
         self.stopped = 0;
         let mut uncompiled = Vec::new();
         for (index, block) in new.blocks.iter().enumerate() {
             let key = (block.code.clone(), block.uses.iter().map(|&var| self.cell(var)).collect());
-            let mut compiled = match kept.get_mut(&key).and_then(Vec::pop) {
+            let mut compiled = match kept.get_mut(&key).and_then(VecDeque::pop_front) {
                 Some(compiled) => compiled,
                 None => self.compile(new, block).unwrap_or_else(|error| {
                     uncompiled.push(Uncompiled { block: BlockId(index as u32), error });

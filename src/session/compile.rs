@@ -1,6 +1,6 @@
 //! From a program's text to a program that can be run, or to what keeps it from being one.
 
-use crate::lua::Checker;
+use crate::lua::{Access, Checker};
 use crate::model::{Program, Robot, resolve};
 use crate::syntax::parser::parse;
 use crate::syntax::{Code, Diagnostic, FileId, Source, Span};
@@ -19,7 +19,12 @@ pub struct Rejected {
 impl Compiler {
     /// `robots`: those chosen on the command line.
     pub fn new(robots: Vec<Robot>) -> Compiler {
-        Compiler { checker: Checker::new(), robots }
+        Compiler { checker: Checker::default(), robots }
+    }
+
+    /// For blocks that will have this access.
+    pub fn with_access(self, access: Access) -> Compiler {
+        Compiler { checker: Checker::new(access), ..self }
     }
 
     pub fn compile(&mut self, source: Source) -> Result<Program, Rejected> {

@@ -12,7 +12,7 @@ use super::compile::{Compiler, Rejected};
 use super::engine_thread::{Commands, Library};
 use super::watch::{Saved, Watch, Watched};
 use super::{findings, loader, modules, robots};
-use crate::model::{Program, Robot};
+use crate::model::Program;
 use crate::runtime::Command;
 use crate::runtime::record::Finding;
 use crate::syntax::Source;
@@ -37,7 +37,7 @@ pub struct Heard {
 }
 
 impl Heard {
-    pub fn new() -> Heard {
+    pub fn listen() -> Heard {
         let (notes, inbox) = channel();
         Heard { notes, inbox }
     }
@@ -48,15 +48,15 @@ impl Heard {
         modules::library(folder, move |path| drop(notes.send(Note::Required(path.to_path_buf()))))
     }
 
-    /// Loads the first text of `file`, then every save of it. Fails only where no thread can be started.
-    pub fn watch(self, file: PathBuf, first: Source, robots: Vec<Robot>, commands: Commands) -> io::Result<Edits> {
+    /// Loads the first text of `file`, then every save of it; the compiler is made on the thread that uses it. Fails only where no thread can be started.
+    pub fn watch(self, file: PathBuf, first: Source, compiler: impl FnOnce() -> Compiler + Send + 'static, commands: Commands) -> io::Result<Edits> {
         let saves = self.notes.clone();
         let known = Watched { path: file.clone(), text: Some(Arc::clone(&first.text)) };
         let watch = Watch::new([known], move |saved| drop(saves.send(Note::Saved(saved))))?;
         let inbox = self.inbox;
         let thread = Builder::new().name("edits".to_string()).spawn(move || {
             let desk = Desk { file, watch, commands, beside: BTreeSet::new(), required: BTreeSet::new() };
-            desk.work(first, Compiler::new(robots), &inbox);
+            desk.work(first, compiler(), &inbox);
         })?;
         Ok(Edits { notes: self.notes, thread: Some(thread) })
     }

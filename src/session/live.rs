@@ -4,6 +4,7 @@ use std::fmt;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use super::compile::Compiler;
 use super::edits::{Edits, Heard};
 use super::engine_thread::{Commands, EngineThread, News, Pacing};
 use super::loader::{self, Unreadable};
@@ -60,11 +61,13 @@ impl Session {
             read => read.map_err(NotStarted::Unreadable)?,
         };
         let folder = folder(&setup.file);
-        let heard = Heard::new();
+        let access = setup.options.access;
+        let heard = Heard::listen();
         let library = heard.library(folder.clone());
         let workshop = Workshop { folder, seed: setup.options.seed, robots: Robots::AsProgrammed };
         let engine = EngineThread::start(setup.options, workshop, library, setup.pacing, news);
-        let edits = heard.watch(setup.file, source, setup.robots, engine.commands().clone());
+        let compiler = move || Compiler::new(setup.robots).with_access(access);
+        let edits = heard.watch(setup.file, source, compiler, engine.commands().clone());
         Ok(Session { _edits: edits.map_err(NotStarted::System)?, engine })
     }
 

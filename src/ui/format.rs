@@ -94,7 +94,17 @@ fn clock_of(seconds: u64) -> String {
 
 /// Steps a second.
 pub fn rate(hz: f64) -> String {
-    if hz == 0.0 { "max".into() } else { format!("{} Hz", number(hz)) }
+    match hz {
+        0.0 => "max".into(),
+        hz if hz >= 1e6 => format!("{:.1} MHz", hz / 1e6),
+        hz if hz >= 1e4 => format!("{:.0} kHz", hz / 1e3),
+        hz => format!("{} Hz", number(hz)),
+    }
+}
+
+/// The last part of a path.
+pub fn file_name(path: &str) -> &str {
+    path.rsplit('/').next().unwrap_or(path)
 }
 
 /// At most six significant digits, no needless zeros.

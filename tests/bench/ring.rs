@@ -17,20 +17,24 @@ const STATES: usize = 5;
 fn main() {
     println!("ring: {STATES} states, 7 Lua calls a change; best and median of {ROUNDS} rounds of {CHANGES} changes\n");
     let mut plain = Vec::new();
+    let mut isolated = Vec::new();
     let mut engine = Vec::new();
     let mut recorded = Vec::new();
     let lua = mlua::Lua::new();
-    let loop_once: mlua::Function = lua.load(plain_loop()).eval().expect("the plain loop is Lua");
+    let loop_once: mlua::Function = lua.load(plain_loop(Calls::Bare)).eval().expect("the plain loop is Lua");
+    let isolated_once: mlua::Function = lua.load(plain_loop(Calls::Isolated)).eval().expect("the plain loop is Lua");
     let mut bare = started(&ring(0));
     let mut told = started(&ring(0));
     // Side by side, so that a noisy machine disturbs all alike.
     for _ in 0..ROUNDS {
         plain.push(timed(|| loop_once.call::<()>(CHANGES).expect("the plain loop runs")));
+        isolated.push(timed(|| isolated_once.call::<()>(CHANGES).expect("the plain loop runs")));
         engine.push(timed(|| steps(&mut bare, Engine::discard_records)));
         recorded.push(timed(|| steps(&mut told, |engine| engine.drain(|record| drop(std::hint::black_box(record))))));
     }
     let floor = best(&plain);
     report("plain Lua loop", &plain, floor);
+    report("plain Lua loop, each call in pcall", &isolated, floor);
     report("engine, records dropped", &engine, floor);
     report("engine, records spelled out", &recorded, floor);
     println!();
@@ -84,7 +88,7 @@ fn compiled(text: &str) -> Program {
     let source = Source::new("ring.lrp", text);
     let parsed = parse(&source, FileId(0));
     assert!(parsed.diagnostics.is_empty(), "{:?}", parsed.diagnostics);
-    let program = resolve(&parsed.tree, source, &[], &mut lrp::lua::Checker::new());
+    let program = resolve(&parsed.tree, source, &[], &mut lrp::lua::Checker::default());
     assert!(program.findings.iter().all(|finding| !finding.is_error()), "{:?}", program.findings);
     program
 }
@@ -104,7 +108,8 @@ fn ring(others: usize) -> String {
     if others > 0 {
         text.push_str("(machine others\n");
         for state in 0..others {
-            writeln!(text, "  (state o{state} (running [{state}])) (on [false] o{state} -> o0)").expect("a String takes text");
+            writeln!(text, "  (state o{state} (running [{state}])) (on [false] o{state} -> o0)")
+                .expect("a String takes text");
         }
         text.push_str(")\n");
     }
@@ -115,8 +120,17 @@ fn idle() -> String {
     "(machine m (state a) (state b) (ontime 1000000000 a -> b))\n(spawn m a)\n".to_string()
 }
 
+/// What a mistake in one closure costs.
+#[derive(Clone, Copy)]
+enum Calls {
+    /// The whole loop.
+    Bare,
+    /// That one closure, as in the engine.
+    Isolated,
+}
+
 /// The same closures as the ring's blocks, called in the same order.
-fn plain_loop() -> String {
+fn plain_loop(calls: Calls) -> String {
     let mut text = String::from("local laps = 0\nlocal guards, onentry, onexit = {}, {}, {}\n");
     for state in 0..STATES {
         let entry = if state == 0 { "laps = laps + 1".to_string() } else { format!("return {state}") };
@@ -125,6 +139,14 @@ fn plain_loop() -> String {
         writeln!(text, "onentry[{state}] = function() {entry} end").expect("a String takes text");
         writeln!(text, "onexit[{state}] = function() return {state} end").expect("a String takes text");
     }
+    let (test, exit, enter) = match calls {
+        Calls::Bare => ("if list[i]() then break end", "onexit[state]()", "onentry[state]()"),
+        Calls::Isolated => (
+            "local ok, holds = pcall(list[i]) if ok and holds then break end",
+            "pcall(onexit[state])",
+            "pcall(onentry[state])",
+        ),
+    };
     writeln!(
         text,
         "return function(changes)
@@ -132,11 +154,11 @@ fn plain_loop() -> String {
            for _ = 1, changes do
              local list = guards[state]
              for i = 1, #list do
-               if list[i]() then break end
+               {test}
              end
-             onexit[state]()
+             {exit}
              state = (state + 1) % {STATES}
-             onentry[state]()
+             {enter}
            end
          end"
     )

@@ -92,10 +92,16 @@ fn files_that_are_none() {
 
 /// Beside it runs a counter, which must come to the end; the first message is this.
 fn beside(what: &str, forms: &str, code: i32, says: &str) -> String {
+    beside_within("250", what, forms, code, says)
+}
+
+/// `limit`: how long a block may run, ms.
+fn beside_within(limit: &str, what: &str, forms: &str, code: i32, says: &str) -> String {
     let counter = "(machine counter (var n := [0]) (state s (running [n = n + 1]))) (spawn counter s)\n";
     let folder = given(format!("{counter}{forms}"));
     let begun = Instant::now();
-    let said = lrp(folder.path(), &["run", "--virtual", "--for", "2s", "--trace", "trace", NAME]);
+    let said =
+        lrp(folder.path(), &["run", "--virtual", "--for", "2s", "--block-limit", limit, "--trace", "trace", NAME]);
     sound(what, &said);
     assert!(begun.elapsed() < AMPLE, "{what}");
     assert_eq!((said.code, &*said.out), (Some(code), ""), "{what}: {}", cut(&said.err));
@@ -143,23 +149,35 @@ fn running(block: &str) -> String {
 
 #[test]
 fn blocks_that_take_everything() {
-    for (what, block, says) in [
-        ("10 GB", "local s = ('x'):rep(1e10)", "resulting string too large"),
+    for (limit, what, block, says) in [
+        ("20000", "10 GB", "local s = ('x'):rep(1e10)", "resulting string too large"),
         (
             "doubling",
             "local s = 'x' while true do s = s .. s end",
             "stopped, as more than 64 MiB of memory were in use",
         ),
-        ("a recursion", "local function f(n) return 1 + f(n + 1) end f(1)", "stack overflow"),
-        ("a tail call", "local function f(n) return f(n + 1) end f(1)", "stopped, as it ran"),
-        ("a recursion through C", "local function f() return ('x'):gsub('x', f) end f()", "stack overflow"),
-        ("coroutines", "local function f() return coroutine.wrap(f)() end f()", "stack overflow"),
-        ("a pattern", "('a'):rep(40):find(('a*'):rep(40)..'b')", "stopped, as it ran"),
+        ("20000", "a recursion", "local function f(n) return 1 + f(n + 1) end f(1)", "stack overflow"),
+        ("250", "a tail call", "local function f(n) return f(n + 1) end f(1)", "stopped, as it ran"),
+        ("20000", "a recursion through C", "local function f() return ('x'):gsub('x', f) end f()", "stack overflow"),
+        ("20000", "coroutines", "local function f() return coroutine.wrap(f)() end f()", "stack overflow"),
+        ("250", "a pattern", "('a'):rep(40):find(('a*'):rep(40)..'b')", "stopped, as it ran"),
     ] {
-        let err = beside(what, &running(block), 1, says);
-        // A recursion may be stopped for its depth in one step, and for its time in another.
-        assert!(err.lines().count() <= 2 && err.len() < 300, "{what}: {}", cut(&err));
+        let err = beside_within(limit, what, &running(block), 1, says);
+        assert!(err.lines().count() == 1 && err.len() < 300, "{what}: {}", cut(&err));
     }
+}
+
+/// To stop it all its calls must be gone through: it may take long, but it ends.
+#[test]
+fn a_recursion_is_stopped_where_it_is_deepest() {
+    let err = beside_within(
+        "1",
+        "a recursion",
+        &running("local function f(n) return 1 + f(n + 1) end f(1)"),
+        1,
+        "stopped, as it ran",
+    );
+    assert!(err.lines().count() <= 2, "{}", cut(&err));
 }
 
 #[test]
@@ -173,8 +191,13 @@ fn machines_that_spawn_themselves() {
 
 #[test]
 fn a_flood_of_words() {
-    let err =
-        beside("100,000 lines a step", &running("for i = 1, 100000 do log.info('line ' .. i) end"), 0, "info: line 1");
+    let err = beside_within(
+        "20000",
+        "100,000 lines a step",
+        &running("for i = 1, 100000 do log.info('line ' .. i) end"),
+        0,
+        "info: line 1",
+    );
     assert!(err.lines().count() < 50_000, "{} lines", err.lines().count());
     let err = beside("a long line", &running("log.info(('x'):rep(1000000))"), 0, "info: xxx");
     assert!(err.lines().all(|line| line.len() < 20_000), "{}", err.len());

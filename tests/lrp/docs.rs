@@ -63,33 +63,6 @@ fn a_wrong_claim_is_found() {
     }
 }
 
-/// The variants of [`What`], in its order.
-const KINDS: [&str; 23] = [
-    "load",
-    "reject",
-    "command",
-    "spawn",
-    "enter",
-    "exit",
-    "transition",
-    "discard",
-    "set",
-    "input",
-    "output",
-    "call",
-    "reply",
-    "log",
-    "error",
-    "pause",
-    "resume",
-    "force",
-    "restart",
-    "stop",
-    "skip",
-    "status",
-    "bridge",
-];
-
 /// Without a wildcard, so that a new variant doesn't compile until it is here, and then isn't tested green until it is
 /// in docs/trace.md.
 fn kind(what: &What) -> &'static str {
@@ -133,8 +106,8 @@ fn the_trace_page_shows_every_kind_of_record_as_it_is() {
             shown.insert(kind(&record.what));
         }
     }
-    for kind in KINDS {
+    for kind in What::KINDS {
         assert!(text.contains(&format!("### {kind}\n")) && shown.contains(kind), "docs/trace.md lacks `{kind}`");
     }
-    assert_eq!(shown.len(), KINDS.len());
+    assert_eq!(shown.len(), What::KINDS.len());
 }

@@ -159,17 +159,19 @@ fn shortens(seen: &Seen, meant: &Seen) -> bool {
         let shortened = |part: String| part.len() < full.len() && full.starts_with(&part);
         label == full || part(label).is_some_and(shortened)
     };
-    // Whole labels choose first, then the longest, so that none takes what only another fits.
-    let mut edges = seen.edges.clone();
-    edges.sort_by_key(|(_, _, label)| (part(label).is_some(), Reverse(label.len())));
+    // Whole labels are found first, then the longest, so that none takes what only another fits.
+    let (whole, mut edges): (Vec<_>, Vec<_>) = seen.edges.iter().partition(|edge| meant.edges.contains(edge));
+    edges.sort_by_key(|(_, _, label)| Reverse(label.len()));
     let mut left = meant.edges.clone();
     let mut takes = |(from, to, label): &(String, String, String)| {
-        let same =
-            |(f, t, full): &(String, String, String)| f == from && t == to && fits(label, full);
-        let found = left.iter().position(same);
+        let exact = left.iter().position(|edge| edge == &(from.clone(), to.clone(), label.clone()));
+        let same = |(f, t, full): &(String, String, String)| f == from && t == to && fits(label, full);
+        let found = exact.or_else(|| left.iter().position(same));
         found.map(|i| left.swap_remove(i)).is_some()
     };
-    seen.states == meant.states && edges.len() == meant.edges.len() && edges.iter().all(&mut takes)
+    seen.states == meant.states
+        && seen.edges.len() == meant.edges.len()
+        && whole.into_iter().chain(edges).all(&mut takes)
 }
 
 #[test]

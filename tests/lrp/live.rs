@@ -65,7 +65,8 @@ impl Edited {
 #[test]
 fn each_way_to_save_arrives() {
     let edited = Edited::start();
-    let ways: [(&str, fn(&Edited, &str)); 2] = [("rename", Edited::by_rename), ("truncation", Edited::by_truncation)];
+    type Save = fn(&Edited, &str);
+    let ways = [("rename", Edited::by_rename as Save), ("truncation", Edited::by_truncation)];
     for (round, (way, save)) in ways.into_iter().cycle().take(10).enumerate() {
         let version = round as u32 + 1;
         let saved = Instant::now();

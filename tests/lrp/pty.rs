@@ -198,6 +198,17 @@ fn ctrl_z_stops_the_robot_and_comes_back() {
 }
 
 #[test]
+fn a_stop_it_never_heard_of_is_recovered_from() {
+    let mut user = User::new();
+    user.signal(libc::SIGSTOP);
+    user.pty.scribble("\x1b[2J\x1b[?1049l\x1b[?25h$ ");
+    user.signal(libc::SIGCONT);
+    user.sees(&["line_follower.lrp", "machines", "lightlim"]);
+    user.pty.type_in("q");
+    user.ends(0);
+}
+
+#[test]
 fn edits_are_seen() {
     let mut user = User::new();
     let file = user.folder.path().join("line_follower.lrp");

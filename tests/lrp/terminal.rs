@@ -200,7 +200,8 @@ fn a_stop_nobody_announced_is_recovered_from() {
     stage.signal(libc::SIGCONT);
     stage.pty.type_in("k");
     stage.sees("<Char('k')>");
-    assert!(stage.pty.is_raw());
+    // For a moment it isn't, while it is taken back.
+    stage.pty.wait_for("raw mode", |_| stage.pty.is_raw());
 }
 
 #[test]

@@ -11,6 +11,7 @@ use super::failure::Complaint;
 use super::message::hint;
 use super::readable::sent;
 use super::value::{source, to_json, to_lua};
+use crate::runtime::What;
 use crate::runtime::{Command, Time};
 
 /// The table a test calls `t`.
@@ -24,33 +25,6 @@ pub fn table(lua: &Lua, api: &Rc<Api>) -> mlua::Result<Table> {
     refuse_others(lua, &t.table)?;
     Ok(t.table)
 }
-
-/// The kinds of records.
-const KINDS: [&str; 23] = [
-    "load",
-    "reject",
-    "command",
-    "spawn",
-    "enter",
-    "exit",
-    "transition",
-    "discard",
-    "set",
-    "input",
-    "output",
-    "call",
-    "reply",
-    "log",
-    "error",
-    "pause",
-    "resume",
-    "force",
-    "restart",
-    "stop",
-    "skip",
-    "status",
-    "bridge",
-];
 
 struct Functions<'l> {
     lua: &'l Lua,
@@ -216,9 +190,9 @@ fn missing_output(bench: &Bench, name: &str) -> Result<Complaint, Complaint> {
 }
 
 fn records(lua: &Lua, api: &Api, kind: Option<&str>) -> mlua::Result<Vec<Value>> {
-    if let Some(unknown) = kind.filter(|kind| !KINDS.contains(kind)) {
+    if let Some(unknown) = kind.filter(|kind| !What::KINDS.contains(kind)) {
         return Err(
-            Complaint::new(format!("there are no records `{unknown}`; {}", hint(unknown, KINDS.into_iter()))).into()
+            Complaint::new(format!("there are no records `{unknown}`; {}", hint(unknown, What::KINDS.iter().copied()))).into()
         );
     }
     let mut told = api.told.borrow_mut();

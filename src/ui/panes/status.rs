@@ -16,7 +16,7 @@ pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) {
     let wide = area.width >= 60;
     pen.put(" ", theme.normal());
     if wide {
-        pen.put(file_name(&app.options().file), theme.bold()).put("  ", theme.normal());
+        pen.put(format::file_name(&app.options().file), theme.bold()).put("  ", theme.normal());
     }
     let mode = if app.halted() { &Mode::Stopped } else { &view.mode };
     let badge = badge(mode);
@@ -96,8 +96,4 @@ fn edit_words(app: &App, edit: &Edit) -> (String, Style) {
             (format!("line {}: {}{more}", first.line, first.message), theme.stop())
         }
     }
-}
-
-fn file_name(path: &str) -> &str {
-    path.rsplit('/').next().unwrap_or(path)
 }

@@ -24,7 +24,7 @@ pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
     };
     let Some(map) = &world.map else {
         draw_nothing(app, area, buffer, "The world can't be read.");
-        return Title::new(world.name.to_string(), "");
+        return Title::new(format::file_name(&world.name), "");
     };
     let mut dots = Dots::new(area, map.size().width, map.size().height);
     for line in map.lines() {
@@ -38,7 +38,7 @@ pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
     }
     dots.draw(app, area, buffer);
     draw_robot(app, world, &dots, area, buffer);
-    Title::new(world.name.to_string(), place(world))
+    Title::new(format::file_name(&world.name), place(world))
 }
 
 fn place(world: &World) -> String {

@@ -6,7 +6,7 @@ use serde_json::Value;
 
 use super::mode::is_own_doing;
 use super::problem::{Origin, Problem};
-use super::{Edit, Kind, Message, Mode, Path, TAKEN_KEPT, View, Which, World, name, owner, within};
+use super::{Edit, Kind, Message, Mode, Path, TAKEN_KEPT, View, Which, World, name, owner};
 use crate::model::Program;
 use crate::runtime::command::Command;
 use crate::runtime::record::{BridgeState, Fault, Finding, Forced, Health, Load, Log, Record, Taken, What};
@@ -139,17 +139,14 @@ impl View {
         Some((source.name.clone(), source.line(span.start as usize)))
     }
 
+    /// Machines inside it that are gone as well have records of their own; one that was forced may run on by itself.
     fn discard(&mut self, path: &Path) {
-        for (inner, machine) in &mut self.machines {
-            if within(inner, path) {
-                machine.running = false;
-                machine.active = None;
-            }
+        if let Some(machine) = self.machines.get_mut(path) {
+            machine.running = false;
+            machine.active = None;
         }
-        for (var, variable) in &mut self.variables {
-            if var.contains('/') && within(var, path) {
-                variable.forget();
-            }
+        for (_, variable) in self.variables.iter_mut().filter(|(var, _)| owner(var) == Some(path)) {
+            variable.forget();
         }
     }
 

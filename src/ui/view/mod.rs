@@ -19,7 +19,7 @@ pub use edit::Edit;
 pub use journal::{Entry, Journal, Kind};
 pub use machine::{Machine, State, Timeout, Which};
 pub use mode::{Mode, is_own_doing};
-pub use problem::{Gravity, Problem, ProblemKey};
+pub use problem::{Gravity, Origin, Problem, ProblemKey};
 pub use variable::Variable;
 pub use world::World;
 

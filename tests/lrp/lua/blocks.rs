@@ -1,3 +1,5 @@
+//! Blocks: compiled once, called often, each failure on its own.
+
 use lrp::lua::{Failure, FailureKind, Level, LogLine, Num, Ran, SyntaxError, Test};
 use serde_json::json;
 

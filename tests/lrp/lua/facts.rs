@@ -1,3 +1,5 @@
+//! What is said of a block without running it.
+
 use lrp::lua::{Checker, Facts, NameUse, known_fields, known_names};
 use serde_json::json;
 
@@ -8,7 +10,7 @@ fn uses(names: &[NameUse]) -> Vec<(&str, u32)> {
 }
 
 fn facts(code: &str) -> Facts {
-    Checker::new().check(code).unwrap_or_else(|error| panic!("{code}: {error}"))
+    Checker::default().check(code).unwrap_or_else(|error| panic!("{code}: {error}"))
 }
 
 #[test]
@@ -64,7 +66,7 @@ fn known_names_are_those_at_hand() {
 
 #[test]
 fn a_configuration_is_data() {
-    let mut checker = Checker::new();
+    let mut checker = Checker::default();
     let config = "\n subscribe = { light = '/light std_msgs/msg/Int32' }, -- so\n stale = 500, list = {1, 2}, deep = {{{{{{7}}}}}}";
     let value = json!({ "subscribe": { "light": "/light std_msgs/msg/Int32" }, "stale": 500, "list": [1, 2], "deep": [[[[[[7]]]]]] });
     assert_eq!(checker.config(config), Ok(value));

@@ -1,3 +1,5 @@
+//! Blocks that take too long or too much are stopped.
+
 use std::time::{Duration, Instant};
 
 use lrp::lua::{Access, FailureKind, Limits, Lua, Num, Ran, Test};

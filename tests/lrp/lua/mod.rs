@@ -4,6 +4,7 @@ mod blocks;
 mod facts;
 mod limits;
 mod patterns;
+mod rounds;
 mod sandbox;
 mod values;
 

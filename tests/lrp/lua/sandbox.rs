@@ -1,3 +1,5 @@
+//! What blocks have at hand, and what they can't reach.
+
 use std::cell::RefCell;
 use std::rc::Rc;
 

@@ -1,3 +1,5 @@
+//! Values of variables, as they are shown and compared.
+
 use lrp::lua::Cell;
 use serde_json::{Value, json};
 

@@ -1,0 +1,245 @@
+//! The second half of resolving: transitions, spawns and blocks of declared elements, with the names in them looked up.
+
+use std::sync::Arc;
+
+use super::ids::*;
+use super::names::Names;
+use super::program::*;
+use super::resolve::Resolver;
+use crate::syntax::ast::{self, MachineItem, StateItem};
+use crate::syntax::nearest::nearest;
+use crate::syntax::{Code, Diagnostic};
+
+/// Names listed at most where none is near to the one that was meant.
+const LISTED: usize = 8;
+
+impl Resolver<'_> {
+    pub(super) fn link(&mut self) {
+        for (machine, tree) in std::mem::take(&mut self.machines) {
+            for item in &tree.items {
+                if let MachineItem::Transition(transition) = item {
+                    self.link_transition(transition, machine);
+                }
+            }
+        }
+        for (state, tree) in std::mem::take(&mut self.states) {
+            self.link_state(state, tree);
+        }
+        for spawn in std::mem::take(&mut self.spawns) {
+            let spawn = self.link_spawn(spawn, None);
+            self.program.spawns.push(spawn);
+        }
+    }
+
+    fn link_state(&mut self, id: StateId, tree: &ast::State) {
+        let machine = Some(self.program[id].machine);
+        for item in &tree.items {
+            match item {
+                StateItem::OnEntry(ast::Entry::Action(block)) => {
+                    let block = self.block(block, machine, Owner::State(id));
+                    self.program.states[id.index()].onentry.push(Entry::Action(block));
+                }
+                StateItem::OnEntry(ast::Entry::Spawn(spawn)) => {
+                    let spawn = self.link_spawn(spawn, Some(id));
+                    self.program.states[id.index()].onentry.push(Entry::Spawn(spawn));
+                }
+                StateItem::Running(block) => {
+                    let block = self.block(block, machine, Owner::State(id));
+                    self.program.states[id.index()].running.push(block);
+                }
+                StateItem::OnExit(block) => {
+                    let block = self.block(block, machine, Owner::State(id));
+                    self.program.states[id.index()].onexit.push(block);
+                }
+                StateItem::Machine(_) => {}
+            }
+        }
+    }
+
+    fn link_spawn(&mut self, spawn: &ast::Spawn, by: Option<StateId>) -> Spawn {
+        let machine = Names::of(&self.program).machine(by, &spawn.machine.text);
+        let target = machine.and_then(|machine| {
+            let state = self.program.state_named(machine, &spawn.state.text);
+            if state.is_none() {
+                self.unknown_state(machine, &spawn.state);
+            }
+            state.map(|state| (machine, state))
+        });
+        if machine.is_none() {
+            self.unknown_machine(spawn, by);
+        }
+        Spawn {
+            machine_name: spawn.machine.text.clone(),
+            state_name: spawn.state.text.clone(),
+            target,
+            span: spawn.span,
+        }
+    }
+
+    fn link_transition(&mut self, tree: &ast::Transition, machine: MachineId) {
+        let sources = self.link_sources(&tree.sources, machine);
+        let (kind, trigger) = match &tree.kind {
+            ast::TransitionKind::On(trigger) => (TransitionKind::On, self.link_trigger(trigger, machine)),
+            ast::TransitionKind::Exit(trigger) => (TransitionKind::Exit, self.link_trigger(trigger, machine)),
+            ast::TransitionKind::Eps => (TransitionKind::Eps, Trigger::Always),
+            ast::TransitionKind::Ontime(timeout) => (TransitionKind::Ontime, self.link_timeout(timeout, machine)),
+        };
+        let target = self.link_target(tree, kind, machine);
+        let id = TransitionId(self.program.transitions.len() as u32);
+        let transition = Transition {
+            machine,
+            kind,
+            sources,
+            target_name: tree.target.text.clone(),
+            target,
+            name: tree.name.as_ref().map(|name| name.text.clone()),
+            trigger,
+            span: tree.span,
+        };
+        self.attach(id, &transition);
+        self.program.transitions.push(transition);
+    }
+
+    fn link_target(&mut self, tree: &ast::Transition, kind: TransitionKind, machine: MachineId) -> Option<StateId> {
+        let owner = match kind {
+            TransitionKind::Exit => match self.program.enclosing(machine) {
+                Some(parent) => parent,
+                None => {
+                    let name = &self.program[machine].name;
+                    let message = format!("`exit` leaves a nested machine, but `{name}` is not nested in a state");
+                    self.diagnostics.push(
+                        Diagnostic::error(Code::ExitAtTop, tree.span, message)
+                            .help("use `on` to go to a state of the same machine"),
+                    );
+                    return None;
+                }
+            },
+            _ => machine,
+        };
+        let target = self.program.state_named(owner, &tree.target.text);
+        if target.is_none() {
+            self.unknown_state(owner, &tree.target);
+            if kind == TransitionKind::Exit && self.program.state_named(machine, &tree.target.text).is_some() {
+                self.help_last(format!(
+                    "an exit goes to a state of `{}`; `on` goes to one of `{}`",
+                    self.name(owner),
+                    self.name(machine)
+                ));
+            }
+        }
+        target
+    }
+
+    fn name(&self, machine: MachineId) -> &str {
+        &self.program[machine].name
+    }
+
+    fn help_last(&mut self, help: String) {
+        if let Some(last) = self.diagnostics.last_mut() {
+            last.help = Some(help);
+        }
+    }
+
+    fn unknown_machine(&mut self, spawn: &ast::Spawn, by: Option<StateId>) {
+        let Some(elsewhere) = self.program.machines.iter().find(|machine| machine.name == spawn.machine.text) else {
+            let known = Names::of(&self.program).machines(by);
+            return self.unknown(Code::UnknownMachine, "machine", &spawn.machine, known.iter().map(|name| &**name));
+        };
+        let message = format!("machine `{}` can't be spawned here: it is written in another state", spawn.machine.text);
+        let help = "a spawn may name the machines of its own state, of the states around it, and those at top level";
+        let diagnostic = Diagnostic::error(Code::UnknownMachine, spawn.machine.span, message);
+        self.diagnostics.push(diagnostic.also(elsewhere.name_span, "written here").help(help));
+    }
+
+    /// Where a transition can be taken, it joins the lists that a step walks.
+    fn attach(&mut self, id: TransitionId, transition: &Transition) {
+        let machine = transition.machine;
+        self.program.machines[machine.index()].transitions.push(id);
+        let inert = matches!(transition.trigger, Trigger::UnknownEvent(_) | Trigger::AfterUnknown(_));
+        if transition.target.is_none() || inert {
+            return;
+        }
+        if transition.kind == TransitionKind::Exit {
+            if let Some(parent) = self.program[machine].parent {
+                self.program.states[parent.index()].exits.push(id);
+            }
+            return;
+        }
+        let states: Vec<StateId> =
+            self.program[machine].states.iter().copied().filter(|&state| transition.leaves(state)).collect();
+        for state in states {
+            self.program.states[state.index()].outgoing.push(id);
+        }
+    }
+
+    fn link_sources(&mut self, sources: &ast::Sources, machine: MachineId) -> Sources {
+        let names: &[ast::Name] = match sources {
+            ast::Sources::Any(_) => return Sources::Any,
+            ast::Sources::One(name) => std::slice::from_ref(name),
+            ast::Sources::Some(names) => names,
+        };
+        let mut states = Vec::new();
+        for name in names {
+            match self.program.state_named(machine, &name.text) {
+                Some(state) => states.push(state),
+                None => self.unknown_state(machine, name),
+            }
+        }
+        Sources::These { names: names.iter().map(|name| name.text.clone()).collect(), states }
+    }
+
+    fn link_trigger(&mut self, trigger: &ast::Trigger, machine: MachineId) -> Trigger {
+        match trigger {
+            ast::Trigger::Block(block) => Trigger::Block(self.transition_block(block, machine)),
+            ast::Trigger::Event(name) => match Names::of(&self.program).event(machine, &name.text) {
+                Some(event) => Trigger::Event(event),
+                None => {
+                    let known = Names::of(&self.program).events(machine);
+                    self.unknown(Code::UnknownEvent, "event", name, known.iter().map(|name| &**name));
+                    Trigger::UnknownEvent(name.text.clone())
+                }
+            },
+        }
+    }
+
+    fn link_timeout(&mut self, timeout: &ast::Timeout, machine: MachineId) -> Trigger {
+        match timeout {
+            ast::Timeout::Number { ms, .. } => Trigger::After(*ms),
+            ast::Timeout::Block(block) => Trigger::AfterBlock(self.transition_block(block, machine)),
+            ast::Timeout::Variable(name) => match Names::of(&self.program).var(Some(machine), &name.text) {
+                Some(var) => Trigger::AfterVar(var),
+                None => {
+                    let known = Names::of(&self.program).vars(Some(machine));
+                    self.unknown(Code::UnknownVariable, "variable", name, known.iter().map(|name| &**name));
+                    Trigger::AfterUnknown(name.text.clone())
+                }
+            },
+        }
+    }
+
+    fn unknown_state(&mut self, machine: MachineId, name: &ast::Name) {
+        let known: Vec<Arc<str>> =
+            self.program[machine].states.iter().map(|&state| self.program[state].name.clone()).collect();
+        let what = format!("state of machine `{}`", self.program[machine].name);
+        self.unknown(Code::UnknownState, &what, name, known.iter().map(|name| &**name));
+    }
+
+    pub(super) fn unknown<'a>(
+        &mut self,
+        code: Code,
+        what: &str,
+        name: &ast::Name,
+        known: impl IntoIterator<Item = &'a str>,
+    ) {
+        let known: Vec<&str> = known.into_iter().collect();
+        let help = match nearest(&name.text, known.iter().copied()) {
+            Some(near) => format!("did you mean `{near}`?"),
+            None if known.is_empty() => "there is none here yet".to_string(),
+            None if known.len() <= LISTED => format!("there is: {}", known.join(", ")),
+            None => format!("there is: {}, and {} more", known[..LISTED].join(", "), known.len() - LISTED),
+        };
+        let article = if what.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
+        let message = format!("`{}` is not {article} {what}", name.text);
+        self.diagnostics.push(Diagnostic::error(code, name.span, message).help(help));
+    }
+}

@@ -1,0 +1,18 @@
+//! Programs with mistakes, one file each in tests/corpus/check, and what is said of them.
+
+use lrp::session::compile::{Compiler, Rejected};
+use lrp::syntax::Source;
+use lrp::syntax::render::{Style, render};
+
+use crate::runs::compare;
+
+#[test]
+fn mistakes_are_explained() {
+    compare("check", |text| {
+        let (verdict, sources, diagnostics) = match Compiler::new(Vec::new()).compile(Source::new("case.lrp", text)) {
+            Ok(program) => ("it can run", program.sources, program.findings),
+            Err(Rejected { sources, diagnostics }) => ("it can't run", sources, diagnostics),
+        };
+        format!("{verdict}\n\n{}", render(&diagnostics, &sources, Style::Plain))
+    });
+}

@@ -1,0 +1,99 @@
+//! A record as one readable line: `5 500 enter esc/tock`.
+
+use lrp::runtime::record::{Change, Fault, Finding, Forced, Load, Log, Op, Taken};
+use lrp::runtime::{Command, Record, What};
+
+/// With a line's end. Texts of programs are left out.
+pub fn line(record: &Record) -> String {
+    let what = match &record.what {
+        What::Load(load) => loaded(load),
+        What::Reject { findings } => {
+            format!("reject{}", findings.iter().map(|it| format!("\n    {}", finding(it))).collect::<String>())
+        }
+        What::Command { command } => format!("command {}", commanded(command)),
+        What::Spawn { machine, by: Some(by) } => format!("spawn {machine} by {by}"),
+        What::Spawn { machine, by: None } => format!("spawn {machine}"),
+        What::Enter { state } => format!("enter {state}"),
+        What::Exit { state } => format!("exit {state}"),
+        What::Transition(taken) => transition(taken),
+        What::Discard { machine } => format!("discard {machine}"),
+        What::Set { var, value, by } => format!("set {var} = {value} by {by}"),
+        What::Input { bridge, name, value } => format!("input {bridge}.{name} {value}"),
+        What::Output { bridge, name, value } => format!("output {bridge}.{name} {value}"),
+        What::Call { bridge, name, id, arguments } => format!("call {bridge}.{name} #{id} {arguments}"),
+        What::Reply { bridge, name, id, value } => format!("reply {bridge}.{name} #{id} {value}"),
+        What::Log(log) => logged(log),
+        What::Error(fault) => failed(fault),
+        What::Pause { reason } => format!("pause: {reason}"),
+        What::Resume => "resume".into(),
+        What::Force { state, how: Forced::Transition } => format!("force {state} by transition"),
+        What::Force { state, how: Forced::Jump } => format!("force {state} by jump"),
+        What::Restart { reason } => format!("restart: {reason}"),
+        What::Stop { reason } => format!("stop: {reason}"),
+        What::Skip { steps } => format!("skip {steps}"),
+        What::Status { rate, late } => format!("status {rate} {late}"),
+        What::Bridge(state) => format!("bridge {} {} {:?}", state.bridge, state.kind, state.state).to_lowercase(),
+    };
+    format!("{} {} {what}\n", record.step, record.t.ms())
+}
+
+fn loaded(load: &Load) -> String {
+    let reason = load.reason.as_ref().map(|reason| format!("; restarts: {reason}")).unwrap_or_default();
+    assert_eq!(load.restarted, load.reason.is_some());
+    let changes: String = load.changes.iter().map(changed).collect();
+    let findings: String = load.findings.iter().map(|it| format!("\n    {}", finding(it))).collect();
+    format!("load{reason}{changes}{findings}")
+}
+
+fn changed(change: &Change) -> String {
+    let sign = match change.op {
+        Op::Added => '+',
+        Op::Removed => '-',
+        Op::Changed => '~',
+    };
+    let kind = format!("{:?}", change.kind).to_lowercase();
+    format!("\n    {sign}{kind} {}", change.path)
+}
+
+/// `error unknown-state 3:7 message (help)`
+fn finding(finding: &Finding) -> String {
+    let help = finding.help.as_ref().map(|help| format!(" ({help})")).unwrap_or_default();
+    let Finding { severity, code, message, line, column, .. } = finding;
+    format!("{severity} {code} {line}:{column} {message}{help}")
+}
+
+fn commanded(command: &Command) -> String {
+    match command {
+        Command::Load(_) => "load".into(),
+        Command::Reject { .. } => "reject".into(),
+        Command::Pause => "pause".into(),
+        Command::Resume => "resume".into(),
+        Command::Step => "step".into(),
+        Command::Rate { hz } => format!("rate {hz}"),
+        Command::TransitionTo { state } => format!("transition-to {state}"),
+        Command::JumpTo { state } => format!("jump-to {state}"),
+        Command::Set { var, value } => format!("set {var} {value}"),
+        Command::Restart => "restart".into(),
+        Command::Runstop => "runstop".into(),
+        Command::FileChanged { file } => format!("file-changed {file}"),
+        Command::PutAtStart { bridge } => format!("put-at-start {bridge}"),
+    }
+}
+
+fn transition(taken: &Taken) -> String {
+    let name = taken.name.as_ref().map(|name| format!(" ({name})")).unwrap_or_default();
+    let via = taken.via.as_ref().map(|via| format!(" via {via}")).unwrap_or_default();
+    format!("transition {}: {} -> {} by {}{name}{via}", taken.machine, taken.from, taken.to, taken.trigger)
+}
+
+fn logged(log: &Log) -> String {
+    let level = format!("{:?}", log.level).to_lowercase();
+    let place = if log.line > 0 { format!(" @{} line {}", log.state, log.line) } else { String::new() };
+    format!("log {level} {:?}{place}", log.message)
+}
+
+fn failed(fault: &Fault) -> String {
+    let help = fault.help.as_ref().map(|help| format!(" ({help})")).unwrap_or_default();
+    let Fault { code, message, line, column, state, count, .. } = fault;
+    format!("error {code} {line}:{column} @{state} x{count}: {message}{help}")
+}

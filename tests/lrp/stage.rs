@@ -1,0 +1,220 @@
+//! Plays a program in virtual time with a fake robot: what a case's head says happens when, and what came of it as
+//! readable lines. Looks at the engine's records only; whether the screen's picture agrees with the engine is asserted.
+
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Duration;
+
+use lrp::lua::Limits;
+use lrp::runtime::{Command, Engine, Input, Options, Record, Time};
+use lrp::session::compile::{Compiler, Rejected};
+use lrp::session::driver::Driver;
+use lrp::session::findings;
+use lrp::session::robots::{Robots, Workshop};
+use lrp::syntax::Source;
+use lrp::ui::view::View;
+
+use crate::lines::line;
+use crate::picture;
+
+/// What happens at a moment of real time.
+#[derive(Clone, Debug)]
+pub enum Event {
+    Command(Command),
+    Input(Input),
+    /// The file is saved with this text.
+    Save(String),
+}
+
+pub struct Stage {
+    driver: Driver,
+    compiler: Compiler,
+    /// Milliseconds between steps.
+    period: f64,
+    /// Program time of the last step, ms.
+    now: f64,
+    pub records: Vec<Record>,
+    pub view: View,
+}
+
+impl Stage {
+    pub fn new(seed: u64, limit: Duration, modules: Vec<(String, String)>) -> Stage {
+        let options = Options { limits: Limits { time: limit, ..Limits::default() }, seed, ..Options::default() };
+        let workshop = Workshop { folder: PathBuf::from("."), seed, robots: Robots::Fake };
+        let mut driver = Driver::new(options, workshop);
+        driver.engine_mut().library(move |wanted| {
+            let found = modules.iter().find(|(name, _)| name == wanted);
+            found.map(|(_, text)| text.clone()).ok_or_else(|| format!("there is no module `{wanted}`"))
+        });
+        let compiler = Compiler::new(Vec::new());
+        Stage { driver, compiler, period: 100.0, now: 0.0, records: Vec::new(), view: View::new(10.0) }
+    }
+
+    pub fn engine(&self) -> &Engine {
+        self.driver.engine()
+    }
+
+    pub fn event(&mut self, event: Event) {
+        match event {
+            Event::Input(input) => self.driver.inject(input),
+            Event::Save(text) => self.save(text),
+            Event::Command(Command::Rate { hz }) => {
+                self.period = 1000.0 / hz;
+                self.command(Command::Rate { hz });
+            }
+            Event::Command(Command::Step) => {
+                self.command(Command::Step);
+                self.step();
+            }
+            Event::Command(command) => self.command(command),
+        }
+    }
+
+    fn save(&mut self, text: String) {
+        let command = match self.compiler.compile(Source::new("case.lrp", text)) {
+            Ok(program) => Command::Load(Arc::new(program)),
+            Err(Rejected { sources, diagnostics }) => {
+                Command::Reject { findings: findings::errors_first(&diagnostics, &sources) }
+            }
+        };
+        self.command(command);
+    }
+
+    pub fn command(&mut self, command: Command) {
+        let mut fresh = Vec::new();
+        // A refusal is among the records.
+        let _ = self.driver.command(command, &mut |record| fresh.push(record));
+        self.take(fresh);
+    }
+
+    /// A period of real time goes by: a step, unless it is paused.
+    pub fn tick(&mut self) {
+        if !self.driver.engine().is_paused() {
+            self.step();
+        }
+    }
+
+    fn step(&mut self) {
+        self.now += self.period;
+        let mut fresh = Vec::new();
+        self.driver.step(Time::from_ms(self.now), &mut |record| fresh.push(record));
+        self.take(fresh);
+    }
+
+    fn take(&mut self, fresh: Vec<Record>) {
+        for record in &fresh {
+            self.view.apply(record);
+        }
+        self.records.extend(fresh);
+        if let Err(difference) = picture::agrees(&self.view, self.driver.engine()) {
+            panic!("the picture differs from the engine: {difference}\nafter\n{}", lines(&self.records));
+        }
+    }
+}
+
+pub fn lines(records: &[Record]) -> String {
+    records.iter().map(line).collect()
+}
+
+/// The head of a case: its lines that begin with `;!`.
+#[derive(Debug)]
+pub struct Head {
+    /// How long it is played, ms of real time.
+    length: f64,
+    rate: f64,
+    seed: u64,
+    limit: Duration,
+    modules: Vec<(String, String)>,
+    /// In the order written.
+    events: Vec<(f64, Event)>,
+}
+
+impl Head {
+    pub fn read(text: &str) -> Head {
+        let mut head = Head {
+            length: 1000.0,
+            rate: 10.0,
+            seed: 1,
+            limit: Duration::from_millis(250),
+            modules: Vec::new(),
+            events: Vec::new(),
+        };
+        for line in text.lines().filter_map(|line| line.strip_prefix(";!")) {
+            let (what, rest) = split(line.trim());
+            match what {
+                "for" => head.length = number(rest),
+                "rate" => head.rate = number(rest),
+                "seed" => head.seed = number(rest) as u64,
+                "limit" => head.limit = Duration::from_secs_f64(number(rest) / 1000.0),
+                "module" => {
+                    let (name, text) = split(rest);
+                    head.modules.push((name.into(), text.into()));
+                }
+                "at" => {
+                    let (t, event) = split(rest);
+                    head.events.push((number(t), read_event(event)));
+                }
+                _ => panic!("`;! {what}` is not known"),
+            }
+        }
+        head
+    }
+
+    /// Plays a text with what its head and `saves` say, in the order of their times.
+    pub fn play(self, text: &str, saves: Vec<(f64, String)>) -> Vec<Record> {
+        let mut stage = Stage::new(self.seed, self.limit, self.modules);
+        stage.period = 1000.0 / self.rate;
+        let saves = saves.into_iter().map(|(t, text)| (t, Event::Save(text)));
+        let mut events: Vec<(f64, Event)> = self.events.into_iter().chain(saves).collect();
+        events.sort_by(|a, b| a.0.total_cmp(&b.0));
+        stage.event(Event::Save(text.into()));
+        let mut events = events.into_iter().peekable();
+        let mut real = 0.0;
+        loop {
+            while let Some((_, event)) = events.next_if(|&(t, _)| t <= real) {
+                stage.event(event);
+            }
+            real += stage.period;
+            if real > self.length {
+                return stage.records;
+            }
+            stage.tick();
+        }
+    }
+}
+
+fn split(text: &str) -> (&str, &str) {
+    let (first, rest) = text.split_once(char::is_whitespace).unwrap_or((text, ""));
+    (first, rest.trim())
+}
+
+/// Milliseconds, or seconds where it ends with `s`.
+fn number(text: &str) -> f64 {
+    let (text, unit) = text.strip_suffix('s').map_or((text, 1.0), |text| (text, 1000.0));
+    unit * text.parse::<f64>().unwrap_or_else(|_| panic!("`{text}` is not a number"))
+}
+
+pub fn read_event(text: &str) -> Event {
+    let (what, rest) = split(text);
+    Event::Command(match what {
+        "pause" => Command::Pause,
+        "resume" => Command::Resume,
+        "step" => Command::Step,
+        "restart" => Command::Restart,
+        "runstop" => Command::Runstop,
+        "rate" => Command::Rate { hz: number(rest) },
+        "transition-to" => Command::TransitionTo { state: rest.into() },
+        "jump-to" => Command::JumpTo { state: rest.into() },
+        "set" => {
+            let (var, value) = split(rest);
+            Command::Set { var: var.into(), value: value.into() }
+        }
+        "input" => {
+            let (port, value) = split(rest);
+            let (bridge, name) = port.split_once('.').expect("robot.input");
+            let value = serde_json::from_str(value).expect("a message in JSON");
+            return Event::Input(Input { bridge: bridge.into(), name: name.into(), value });
+        }
+        _ => panic!("`{what}` is nothing that happens"),
+    })
+}
