@@ -152,6 +152,7 @@ fn blocks_that_take_everything() {
     for (limit, what, block, says) in [
         ("20000", "10 GB", "local s = ('x'):rep(1e10)", "resulting string too large"),
         (
+            "20000",
             "doubling",
             "local s = 'x' while true do s = s .. s end",
             "stopped, as more than 64 MiB of memory were in use",
