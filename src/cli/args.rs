@@ -77,7 +77,7 @@ pub struct RunArgs {
     /// The program
     pub file: PathBuf,
     /// Steps a second; 0: as fast as possible
-    #[arg(long, value_name = "HZ", default_value = "10", value_parser = rate)]
+    #[arg(long, value_name = "HZ", default_value = "10", allow_hyphen_values = true, value_parser = rate)]
     pub rate: Rate,
     /// Which robot a name stands for, whatever the program says, such as robot=sim
     #[arg(long, value_name = "NAME=KIND", value_parser = robot)]
@@ -86,7 +86,7 @@ pub struct RunArgs {
     #[arg(long, value_name = "PATH")]
     pub trace: Option<PathBuf>,
     /// End after this much program time, such as 500ms, 5s or 2m
-    #[arg(long = "for", value_name = "TIME", value_parser = duration)]
+    #[arg(long = "for", value_name = "TIME", allow_hyphen_values = true, value_parser = duration)]
     pub until: Option<Duration>,
     /// Virtual time: no waiting, and equal runs give equal records
     #[arg(long = "virtual", action = ArgAction::SetTrue)]

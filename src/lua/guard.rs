@@ -283,14 +283,15 @@ fn watch(guard: &Guard) {
     let pause = (guard.limit / 10).clamp(Duration::from_millis(1), Duration::from_millis(25));
     let mut seen = (0, Instant::now());
     // When the call is signalled next, since it was first seen, and how long after that again.
-    let (mut due, mut gap) = (guard.limit, pause);
+    let first = pause * 4;
+    let (mut due, mut gap) = (guard.limit, first);
     while !guard.done.load(SeqCst) {
         std::thread::park_timeout(pause);
         let call = guard.call.load(SeqCst);
         let elapsed = seen.1.elapsed();
         if call != seen.0 {
             seen = (call, Instant::now());
-            (due, gap) = (guard.limit, pause);
+            (due, gap) = (guard.limit, first);
             guard.overdue.store(0, SeqCst);
         } else if !call.is_multiple_of(2)
             && let Some(over) = elapsed.checked_sub(guard.limit)

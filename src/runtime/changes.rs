@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use super::engine::Engine;
-use super::reach::Reach;
+use super::reach::{Group, Reach};
 use super::record::What;
 use crate::model::{BlockId, Program, VarId};
 
@@ -11,6 +11,8 @@ use crate::model::{BlockId, Program, VarId};
 pub(super) struct Changes {
     touched: Vec<BlockId>,
     reach: Reach,
+    /// Groups that were reached in a step; kept for its memory.
+    reached: Vec<Group>,
 }
 
 impl Changes {
@@ -52,9 +54,14 @@ impl Engine {
     /// What blocks changed that don't name it: through a function or a table that another variable holds as well.
     fn report_reached(&mut self, touched: &[BlockId]) {
         let uses = touched.iter().filter_map(|&block| self.program[block].uses.first().copied());
-        for var in self.changes.reach.from(uses) {
-            self.report_if_changed(var, touched);
+        let mut reached = std::mem::take(&mut self.changes.reached);
+        self.changes.reach.groups_of(uses, &mut reached);
+        for group in reached.drain(..) {
+            for index in 0..self.changes.reach.vars(group).len() {
+                self.report_if_changed(self.changes.reach.vars(group)[index], touched);
+            }
         }
+        self.changes.reached = reached;
     }
 
     fn report_if_changed(&mut self, var: VarId, touched: &[BlockId]) {

@@ -1,8 +1,10 @@
 //! Which variables can change without being named: through a table or a function that another variable holds as well.
 
-use std::collections::BTreeSet;
-
 use crate::model::{Owner, Program, VarId};
+
+/// Variables that are one group.
+#[derive(Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
+pub(super) struct Group(usize);
 
 /// Variables that meet in some block may share a table or hold a function that changes the others, so what changes one
 /// may change them all: they are one group.
@@ -36,9 +38,15 @@ impl Reach {
         Reach { group, groups }
     }
 
-    /// All variables that may change when blocks use these.
-    pub fn from(&self, uses: impl Iterator<Item = VarId>) -> Vec<VarId> {
-        let groups: BTreeSet<usize> = uses.map(|var| self.group[var.index()]).collect();
-        groups.into_iter().flat_map(|group| self.groups[group].iter().copied()).collect()
+    /// The groups that these variables belong to, each once.
+    pub fn groups_of(&self, uses: impl Iterator<Item = VarId>, groups: &mut Vec<Group>) {
+        groups.extend(uses.map(|var| Group(self.group[var.index()])));
+        groups.sort_unstable();
+        groups.dedup();
+    }
+
+    /// All variables that may change when a block uses one of them.
+    pub fn vars(&self, group: Group) -> &[VarId] {
+        &self.groups[group.0]
     }
 }

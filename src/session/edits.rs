@@ -11,7 +11,7 @@ use std::thread::{Builder, JoinHandle};
 use super::compile::{Compiler, Rejected};
 use super::engine_thread::{Commands, Library};
 use super::watch::{Saved, Watch, Watched};
-use super::{findings, modules, robots};
+use super::{findings, loader, modules, robots};
 use crate::model::Program;
 use crate::runtime::Command;
 use crate::runtime::record::Finding;
@@ -128,7 +128,7 @@ impl Desk {
     fn watch_all(&self) {
         let watched = |path: &PathBuf| {
             // Without a text to compare with, the next one counts as new: at worst it is taken over again.
-            let text = std::fs::read_to_string(path).ok().map(Arc::from);
+            let text = loader::read(path).ok().map(|source| source.text);
             Watched { path: path.clone(), text }
         };
         let others = self.beside.iter().chain(&self.required);
@@ -140,7 +140,11 @@ impl Desk {
             Saved::Text { path, .. } => return Command::FileChanged { file: path.display().to_string() },
             Saved::Back { .. } => return Command::Reject { findings: Vec::new() },
             Saved::Missing { path } => (path, "the file is gone".to_string()),
-            Saved::Unreadable { path, why } => (path, why.to_string()),
+            Saved::Unreadable { path, why } => {
+                let why = why.to_string();
+                let said = why.strip_prefix(&format!("{}: ", path.display())).unwrap_or(&why).to_string();
+                (path, said)
+            }
         };
         Command::Reject { findings: vec![of_file(&path, format!("{trouble}; the program goes on"))] }
     }

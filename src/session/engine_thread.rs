@@ -289,6 +289,8 @@ impl<'n, N: Fn(News)> Loop<'n, N> {
             if !std::mem::replace(&mut self.loaded, true) {
                 self.pace.resume(self.started.elapsed());
             }
+            // Before a block of it can hold anything up.
+            self.flush();
         }
     }
 

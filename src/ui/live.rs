@@ -172,6 +172,8 @@ impl Live {
             }
             Happened::Signal(Signal::Interrupt) => Next::End(ExitCode::from(130)),
             Happened::Signal(Signal::Suspend) => self.effect(Effect::Suspend),
+            // It may have been stopped unheard, and a shell had the terminal. What an editor covers is drawn when it ends.
+            Happened::Signal(Signal::Continue) if self.held.is_none() => self.effect(Effect::Redraw),
             Happened::Signal(Signal::Continue) => Next::Go,
             Happened::News(News::Records(records)) => {
                 records.iter().for_each(|record| self.record(record));

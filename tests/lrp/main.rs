@@ -1,7 +1,10 @@
 //! All integration tests of the package, in one binary.
 
+mod bad_input;
 mod behaviors;
+mod binary;
 mod checks;
+mod command_line;
 mod docs;
 mod editor;
 mod edits;
@@ -11,10 +14,12 @@ mod isolation;
 mod keys;
 mod layers;
 mod lines;
+mod live;
 mod loader;
 mod lua;
 mod picture;
 mod plot;
+mod pty;
 mod quiet;
 mod runs;
 mod settling;

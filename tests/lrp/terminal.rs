@@ -1,7 +1,7 @@
 //! The terminal is as it was, however the program ends; and while it runs, keys and frames go where they should.
 
 mod program;
-mod pty;
+pub mod pty;
 
 use std::env;
 use std::fs;
@@ -174,7 +174,8 @@ fn a_stop_nobody_announced_is_recovered_from() {
     stage.signal(libc::SIGCONT);
     stage.pty.type_in("k");
     stage.sees("<Char('k')>");
-    assert!(stage.pty.is_raw());
+    // For a moment it isn't, while it is taken back.
+    stage.pty.wait_for("raw mode", |_| stage.pty.is_raw());
 }
 
 #[test]

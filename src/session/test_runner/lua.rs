@@ -163,10 +163,13 @@ fn position<'m>(message: &'m str, folder: &Path) -> Option<(Place, &'m str)> {
     file.ends_with(".lua").then(|| (Place { file: join(folder, file), line }, text))
 }
 
+/// How far out an error is traced: each level is looked up anew from the innermost one, and a recursion has very many.
+const CALLS: usize = 100;
+
 /// The lines of test files that are being run, innermost first.
 fn calls(lua: &Lua, folder: &Path) -> Vec<Place> {
     let mut places = Vec::new();
-    for level in 0.. {
+    for level in 0..CALLS {
         let Some(found) = lua.inspect_stack(level, |debug| {
             let source = debug.source().source.map(|source| source.into_owned());
             (source, debug.current_line())

@@ -63,7 +63,14 @@ impl Pty {
         self.keyboard.write_all(keys.as_bytes()).unwrap();
     }
 
+    /// Shows what another program wrote, a shell for instance.
+    pub fn scribble(&self, text: &str) {
+        self.shown.screen.lock().unwrap().process(text.as_bytes());
+    }
+
     pub fn resize(&self, cols: u16, rows: u16) {
+        // A terminal of another size lays out anew: what is seen from here on is drawn for this one.
+        self.shown.screen.lock().unwrap().screen_mut().set_size(rows, cols);
         self.master.resize(PtySize { rows, cols, ..PtySize::default() }).unwrap();
     }
 
