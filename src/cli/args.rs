@@ -142,7 +142,8 @@ pub enum GraphFormat {
 
 impl RunArgs {
     pub fn setup(&self) -> Setup {
-        let limits = Limits { time: Duration::from_millis(self.block_limit), memory: (self.memory_limit << 20) as usize };
+        let limits =
+            Limits { time: Duration::from_millis(self.block_limit), memory: (self.memory_limit << 20) as usize };
         let access = if self.allow_system { Access::System } else { Access::Sandboxed };
         let clock = if self.virtual_time { Clock::Virtual } else { Clock::Real };
         Setup {
@@ -161,7 +162,9 @@ fn rate(text: &str) -> Result<Rate, String> {
 
 fn robot(text: &str) -> Result<Robot, String> {
     match text.split_once('=') {
-        Some((name, kind)) if !name.is_empty() && !kind.is_empty() => Ok(Robot { name: name.to_string(), kind: kind.to_string() }),
+        Some((name, kind)) if !name.is_empty() && !kind.is_empty() => {
+            Ok(Robot { name: name.to_string(), kind: kind.to_string() })
+        }
         _ => Err("write NAME=KIND, such as robot=sim".to_string()),
     }
 }

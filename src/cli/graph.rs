@@ -33,9 +33,9 @@ enum Failure {
 
 fn drawing(args: &GraphArgs) -> Result<String, Failure> {
     let source = loader::read(&args.file).map_err(|why| Failure::Said(why.to_string()))?;
-    let program = Compiler::new(Vec::new())
-        .compile(source)
-        .map_err(|Rejected { sources, diagnostics }| Failure::Diagnosed(render(&diagnostics, &sources, Style::Plain)))?;
+    let program = Compiler::new(Vec::new()).compile(source).map_err(|Rejected { sources, diagnostics }| {
+        Failure::Diagnosed(render(&diagnostics, &sources, Style::Plain))
+    })?;
     let machine = chosen(&program, args.machine.as_deref()).map_err(Failure::Said)?;
     Ok(match args.format {
         GraphFormat::Text => text(&program, machine, args),
@@ -48,12 +48,20 @@ fn chosen(program: &Program, path: Option<&str>) -> Result<MachineId, String> {
     let Some(path) = path else {
         return program.tops.first().copied().ok_or_else(|| "this program has no machine".to_string());
     };
-    program.machine(path).ok_or_else(|| {
+    program.machine(path).or_else(|| by_last_name(program, path)).ok_or_else(|| {
         let known: Vec<&str> = program.machines.iter().map(|machine| &*machine.path).collect();
         let near = nearest(path, known.iter().copied());
-        let help = near.map_or_else(|| format!("there is: {}", known.join(", ")), |near| format!("did you mean `{near}`?"));
+        let help =
+            near.map_or_else(|| format!("there is: {}", known.join(", ")), |near| format!("did you mean `{near}`?"));
         format!("there is no machine `{path}`; {help}")
     })
+}
+
+/// The machine of this name, where only one has it.
+fn by_last_name(program: &Program, name: &str) -> Option<MachineId> {
+    let mut named =
+        (0..program.machines.len() as u32).map(MachineId).filter(|&machine| *program[machine].name == *name);
+    named.next().filter(|_| named.next().is_none())
 }
 
 fn text(program: &Program, machine: MachineId, args: &GraphArgs) -> String {

@@ -87,17 +87,12 @@ pub(super) unsafe fn analyse(state: *mut ffi::lua_State, code: &str) -> Result<(
 /// Of the two reasons, that of the attempt that came further: a text like `a > ` was meant as an expression.
 fn better(expression: SyntaxError, statements: SyntaxError) -> SyntaxError {
     let further = expression.line > statements.line;
-    let to_its_end =
-        expression.line == statements.line && expression.is_at_end() && !statements.is_at_end();
+    let to_its_end = expression.line == statements.line && expression.is_at_end() && !statements.is_at_end();
     // `x > 1 && ..`: an expression never is a statement, so that attempt failed at once.
     let no_statement = expression.line == statements.line
         && statements.message.starts_with("syntax error near")
         && expression.token != statements.token;
-    if further || to_its_end || no_statement {
-        expression
-    } else {
-        statements
-    }
+    if further || to_its_end || no_statement { expression } else { statements }
 }
 
 unsafe fn load_as(state: *mut ffi::lua_State, code: &str, form: Form) -> Result<(), SyntaxError> {

@@ -79,7 +79,9 @@ fn unknown_name(
                 (Some(var), _) => {
                     format!("`{}` is seen only in its machine: declare it further out to share it", var.path)
                 }
-                _ if system => format!("blocks can't reach files and processes; `--allow-system` lets them use `{}`", name.name),
+                _ if system => {
+                    format!("blocks can't reach files and processes; `--allow-system` lets them use `{}`", name.name)
+                }
                 (None, Some(near)) => format!("did you mean `{near}`?"),
                 (None, None) => {
                     format!("declare it with `(var {} := [..])`, or use `local` inside the block", name.name)

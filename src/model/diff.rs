@@ -11,10 +11,14 @@ use crate::syntax::lua_tokens::same_code;
 pub fn diff(old: &Program, new: &Program) -> Vec<Change> {
     let mut changes = Vec::new();
     changes.extend(compare(Element::Bridge, bridges(old), bridges(new), |a, b| a == b));
-    changes.extend(compare(Element::Variable, vars(old), vars(new), |&a, &b| same_block(old, old[a].init, new, new[b].init)));
+    changes.extend(compare(Element::Variable, vars(old), vars(new), |&a, &b| {
+        same_block(old, old[a].init, new, new[b].init)
+    }));
     changes.extend(compare(Element::Machine, machines(old), machines(new), |_, _| true));
     changes.extend(compare(Element::State, states(old), states(new), |&a, &b| same_actions(old, a, new, b)));
-    changes.extend(compare(Element::Event, events(old), events(new), |&a, &b| same_block(old, old[a].block, new, new[b].block)));
+    changes.extend(compare(Element::Event, events(old), events(new), |&a, &b| {
+        same_block(old, old[a].block, new, new[b].block)
+    }));
     changes.extend(compare(Element::Transition, transitions(old), transitions(new), |_, _| true));
     changes.extend(compare(Element::Spawn, spawns(old), spawns(new), |a, b| a == b));
     changes.extend(compare(Element::Action, hooks(old), hooks(new), |&a, &b| same_block(old, a, new, b)));

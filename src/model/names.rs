@@ -54,9 +54,7 @@ impl<'p> Names<'p> {
     fn machines_in_scope(&self, state: Option<StateId>) -> impl Iterator<Item = MachineId> + use<'p> {
         let program = self.program;
         let around = std::iter::successors(state, move |&state| program[program[state].machine].parent);
-        around
-            .flat_map(move |state| program[state].machines.iter().copied())
-            .chain(program.tops.iter().copied())
+        around.flat_map(move |state| program[state].machines.iter().copied()).chain(program.tops.iter().copied())
     }
 
     pub fn machine(&self, state: Option<StateId>, name: &str) -> Option<MachineId> {

@@ -14,25 +14,40 @@ pub enum Command {
     #[serde(skip)]
     Load(Arc<Program>),
     /// A text that can't be read as a program: it is reported, and what runs goes on.
-    Reject { findings: Vec<Finding> },
+    Reject {
+        findings: Vec<Finding>,
+    },
     Pause,
     Resume,
     /// Exactly one step, while paused.
     Step,
     /// Steps a second; 0: as fast as possible.
-    Rate { hz: f64 },
+    Rate {
+        hz: f64,
+    },
     /// Goes to a state as a transition would: onexit and onentry run.
-    TransitionTo { state: String },
+    TransitionTo {
+        state: String,
+    },
     /// Goes to a state without running any action.
-    JumpTo { state: String },
+    JumpTo {
+        state: String,
+    },
     /// Gives a variable the value of a Lua expression in the variable's scope.
-    Set { var: String, value: String },
+    Set {
+        var: String,
+        value: String,
+    },
     /// From scratch: variables initialised, spawns done anew.
     Restart,
     /// Stops the robot and pauses. The session has told the bridges before the engine sees it.
     Runstop,
     /// A file beside the program has another text: a world, or a Lua file that a block requires.
-    FileChanged { file: String },
+    FileChanged {
+        file: String,
+    },
     /// Puts a simulated robot back at its start.
-    PutAtStart { bridge: String },
+    PutAtStart {
+        bridge: String,
+    },
 }

@@ -107,9 +107,7 @@ impl Engine {
         self.step += 1;
         self.now = now;
         self.store.lua.now(now.ms());
-        for input in inputs {
-            self.receive(input);
-        }
+        self.receive(inputs);
         let plan = Rc::clone(&self.plan);
         for index in 0..self.tops.len() {
             self.step_machine(&plan, self.tops[index]);
@@ -117,10 +115,13 @@ impl Engine {
         self.finish();
     }
 
-    fn receive(&mut self, input: &Input) {
-        self.robots.receive(&self.store.lua, input, self.now);
-        let Input { bridge, name, value } = input.clone();
-        self.rare(What::Input { bridge, name, value });
+    /// What robots said; blocks see it from now on.
+    pub fn receive(&mut self, inputs: &[Input]) {
+        for input in inputs {
+            self.robots.receive(&self.store.lua, input, self.now);
+            let Input { bridge, name, value } = input.clone();
+            self.rare(What::Input { bridge, name, value });
+        }
     }
 
     /// What a step or a command leaves to be said at its end: changed variables, outputs, faults that went on.

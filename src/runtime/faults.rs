@@ -59,7 +59,13 @@ impl Faults {
             count: 1,
         };
         self.by_place.insert(key, self.known.len());
-        self.known.push(Entry { code: what.code, span: what.span, fault: fault.clone(), reported: 1, reported_at: now });
+        self.known.push(Entry {
+            code: what.code,
+            span: what.span,
+            fault: fault.clone(),
+            reported: 1,
+            reported_at: now,
+        });
         Some(fault)
     }
 

@@ -5,7 +5,12 @@ use crate::model::Program;
 use crate::syntax::{Diagnostic, Severity, Source};
 
 pub fn findings(program: &Program, which: impl Fn(&Diagnostic) -> bool) -> Vec<Finding> {
-    program.findings.iter().filter(|finding| which(finding)).map(|finding| spelled_out(finding, &program.sources)).collect()
+    program
+        .findings
+        .iter()
+        .filter(|finding| which(finding))
+        .map(|finding| spelled_out(finding, &program.sources))
+        .collect()
 }
 
 pub fn spelled_out(diagnostic: &Diagnostic, sources: &[Source]) -> Finding {

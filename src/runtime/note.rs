@@ -7,11 +7,18 @@ use super::record::{Taken, What};
 use crate::model::*;
 
 pub enum Note {
-    Spawn { machine: MachineId, by: Option<StateId> },
+    Spawn {
+        machine: MachineId,
+        by: Option<StateId>,
+    },
     Enter(StateId),
     Exit(StateId),
     Discard(MachineId),
-    Transition { transition: TransitionId, from: StateId, via: Option<StateId> },
+    Transition {
+        transition: TransitionId,
+        from: StateId,
+        via: Option<StateId>,
+    },
     /// What is rare enough to be spelled out at once.
     Rare(Box<What>),
 }

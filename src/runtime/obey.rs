@@ -7,9 +7,9 @@ use super::command::Command;
 use super::engine::Engine;
 use super::machine::Spawner;
 use super::record::{Forced, Level, Log, What};
+use crate::lua::{Cell, Ran};
 use crate::model::names::Names;
 use crate::model::{StateId, VarId};
-use crate::lua::{Cell, Ran};
 use crate::syntax::nearest::nearest;
 
 /// Why a command had no effect, as a sentence.
@@ -29,7 +29,13 @@ impl Engine {
         }
         let result = self.obey(command);
         if let Err(Refused(message)) = &result {
-            let log = Log { level: Level::Error, message: message.clone(), state: Arc::default(), file: Arc::default(), line: 0 };
+            let log = Log {
+                level: Level::Error,
+                message: message.clone(),
+                state: Arc::default(),
+                file: Arc::default(),
+                line: 0,
+            };
             self.rare(What::Log(log));
         }
         self.finish();
@@ -116,11 +122,16 @@ impl Engine {
         let var = program.var(path).ok_or_else(|| refuse("variable", path, known))?;
         let machine = program[var].machine;
         if let Some(machine) = machine.filter(|_| !self.is_alive(var)) {
-            return Err(Refused(format!("`{path}` has no value now: machine `{}` is not running", program[machine].path)));
+            return Err(Refused(format!(
+                "`{path}` has no value now: machine `{}` is not running",
+                program[machine].path
+            )));
         }
         let in_scope = Names::of(&program).vars_in_scope(machine);
-        let scope: Vec<(&str, Cell)> = in_scope.iter().map(|&var| (&*program[var].name, self.store.cell(var))).collect();
-        let block = self.store.lua.compile(value, &scope).map_err(|error| Refused(format!("`{value}`: {}", error.message)))?;
+        let scope: Vec<(&str, Cell)> =
+            in_scope.iter().map(|&var| (&*program[var].name, self.store.cell(var))).collect();
+        let block =
+            self.store.lua.compile(value, &scope).map_err(|error| Refused(format!("`{value}`: {}", error.message)))?;
         let done = match self.store.lua.init(block, self.store.cell(var)) {
             Ran::Done => Ok(()),
             Ran::Failed => Err(Refused(format!("`{value}`: {}", self.store.lua.take_failure().message))),

@@ -7,8 +7,8 @@ use serde_json::Value;
 
 use super::command::Command;
 use super::time::Time;
-pub use crate::model::change::{Change, Element, Op};
 use crate::model::Program;
+pub use crate::model::change::{Change, Element, Op};
 
 type Path = Arc<str>;
 
@@ -26,46 +26,113 @@ pub enum What {
     /// A program was taken over: the first, or an edit.
     Load(Load),
     /// An edit can't be read; the program that runs goes on.
-    Reject { findings: Vec<Finding> },
+    Reject {
+        findings: Vec<Finding>,
+    },
     Command {
         #[serde(flatten)]
         command: Command,
     },
     /// `by`: the state whose onentry did it; none at top level.
-    Spawn { machine: Path, by: Option<Path> },
-    Enter { state: Path },
-    Exit { state: Path },
+    Spawn {
+        machine: Path,
+        by: Option<Path>,
+    },
+    Enter {
+        state: Path,
+    },
+    Exit {
+        state: Path,
+    },
     Transition(Taken),
     /// A machine is no longer running.
-    Discard { machine: Path },
+    Discard {
+        machine: Path,
+    },
     /// `by`: the path of the state, event or machine whose block did it; `init`; or `command`.
-    Set { var: Path, value: Value, by: Path },
-    Input { bridge: Path, name: Path, value: Value },
-    Output { bridge: Path, name: Path, value: Value },
-    Call { bridge: Path, name: Path, id: u64, arguments: Value },
-    Reply { bridge: Path, name: Path, id: u64, value: Value },
+    Set {
+        var: Path,
+        value: Value,
+        by: Path,
+    },
+    Input {
+        bridge: Path,
+        name: Path,
+        value: Value,
+    },
+    Output {
+        bridge: Path,
+        name: Path,
+        value: Value,
+    },
+    Call {
+        bridge: Path,
+        name: Path,
+        id: u64,
+        arguments: Value,
+    },
+    Reply {
+        bridge: Path,
+        name: Path,
+        id: u64,
+        value: Value,
+    },
     Log(Log),
     Error(Fault),
-    Pause { reason: String },
+    Pause {
+        reason: String,
+    },
     Resume,
     /// A user moved a machine to a state.
-    Force { state: Path, how: Forced },
-    Restart { reason: String },
+    Force {
+        state: Path,
+        how: Forced,
+    },
+    Restart {
+        reason: String,
+    },
     /// The bridges were told to bring the robot to a halt.
-    Stop { reason: String },
+    Stop {
+        reason: String,
+    },
     /// Steps that couldn't be made in time and are not made up.
-    Skip { steps: u64 },
+    Skip {
+        steps: u64,
+    },
     /// Twice a second of real time: steps a second as they are, and how late the last one was, ms.
-    Status { rate: f64, late: f64 },
+    Status {
+        rate: f64,
+        late: f64,
+    },
     Bridge(BridgeState),
 }
 
 impl What {
     /// What `kind` says in a record, in the order of the variants.
     pub const KINDS: &[&str] = &[
-        "load", "reject", "command", "spawn", "enter", "exit", "transition", "discard",
-        "set", "input", "output", "call", "reply", "log", "error", "pause",
-        "resume", "force", "restart", "stop", "skip", "status", "bridge",
+        "load",
+        "reject",
+        "command",
+        "spawn",
+        "enter",
+        "exit",
+        "transition",
+        "discard",
+        "set",
+        "input",
+        "output",
+        "call",
+        "reply",
+        "log",
+        "error",
+        "pause",
+        "resume",
+        "force",
+        "restart",
+        "stop",
+        "skip",
+        "status",
+        "bridge",
     ];
 }
 

@@ -104,7 +104,9 @@ impl Robots {
             return None;
         }
         for robot in &self.robots {
-            let Ok((Some(input), Some(why))) = robot.missed.call::<(Option<String>, Option<String>)>(()) else { continue };
+            let Ok((Some(input), Some(why))) = robot.missed.call::<(Option<String>, Option<String>)>(()) else {
+                continue;
+            };
             if message.contains(&format!("'{input}'")) {
                 return Some(NoMessage { bridge: robot.name.clone(), input, why });
             }
@@ -138,6 +140,7 @@ fn messages(ports: &[crate::model::description::Port]) -> Value {
 }
 
 fn to_lua(lua: &mlua::Lua, value: &Value) -> mlua::Result<mlua::Value> {
-    let plain = SerializeOptions::new().serialize_none_to_null(false).serialize_unit_to_null(false).set_array_metatable(false);
+    let plain =
+        SerializeOptions::new().serialize_none_to_null(false).serialize_unit_to_null(false).set_array_metatable(false);
     lua.to_value_with(value, plain)
 }

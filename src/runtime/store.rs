@@ -95,7 +95,8 @@ impl Store {
     }
 
     fn take_over_cells(&mut self, old: &Program, new: &Program) {
-        let mut kept: HashMap<&str, Cell> = old.vars.iter().zip(&self.cells).map(|(var, &cell)| (&*var.path, cell)).collect();
+        let mut kept: HashMap<&str, Cell> =
+            old.vars.iter().zip(&self.cells).map(|(var, &cell)| (&*var.path, cell)).collect();
         self.cells = new.vars.iter().map(|var| kept.remove(&*var.path).unwrap_or_else(|| self.lua.cell())).collect();
         for (_, cell) in kept {
             self.lua.free_cell(cell);

@@ -21,6 +21,8 @@ pub struct Driver {
     injected: Vec<Input>,
     /// What an edit or a forced state sent while paused: it leaves with the next step.
     held: Vec<(Arc<str>, Arc<str>, Value)>,
+    /// A robot's file was saved with mistakes: it goes by what it read before.
+    world_is_broken: bool,
 }
 
 struct Robot {
@@ -34,7 +36,14 @@ pub type Sink<'a> = &'a mut dyn FnMut(Record);
 
 impl Driver {
     pub fn new(options: Options, workshop: Workshop) -> Driver {
-        Driver { engine: Engine::new(options), workshop, robots: Vec::new(), injected: Vec::new(), held: Vec::new() }
+        Driver {
+            engine: Engine::new(options),
+            workshop,
+            robots: Vec::new(),
+            injected: Vec::new(),
+            held: Vec::new(),
+            world_is_broken: false,
+        }
     }
 
     pub fn engine(&self) -> &Engine {
@@ -66,8 +75,7 @@ impl Driver {
         for robot in &mut self.robots {
             let Some(bridge) = &mut robot.bridge else { continue };
             bridge.advance(now);
-            let messages = bridge.sample().into_iter();
-            inputs.extend(messages.map(|(name, value)| Input { bridge: robot.form.name.clone(), name, value }));
+            inputs.extend(messages(&robot.form.name, &mut **bridge));
         }
         inputs.append(&mut self.injected);
         self.engine.step(now, &inputs);
@@ -75,7 +83,10 @@ impl Driver {
     }
 
     pub fn command(&mut self, command: Command, sink: Sink) -> Result<(), Refused> {
-        let held = matches!(command, Command::Load(_) | Command::Restart | Command::TransitionTo { .. } | Command::JumpTo { .. });
+        let held = matches!(
+            command,
+            Command::Load(_) | Command::Restart | Command::TransitionTo { .. } | Command::JumpTo { .. }
+        );
         let delivery = if held && self.engine.is_paused() { Delivery::Held } else { Delivery::Now };
         let result = match command {
             Command::Load(program) => self.load(Arc::unwrap_or_clone(program)),
@@ -122,12 +133,15 @@ impl Driver {
             match bridge.file_changed(file) {
                 Ok(Concern::None) => {}
                 Ok(Concern::TakenOver) => {
-                    self.engine.say(What::Reject { findings: Vec::new() });
+                    if std::mem::take(&mut self.world_is_broken) {
+                        self.engine.say(What::Reject { findings: Vec::new() });
+                    }
                     self.engine.say(What::Bridge(bridge.state()));
                 }
                 Err(Problems { sources, diagnostics }) => {
                     let sources = if sources.is_empty() { self.engine.program().sources.clone() } else { sources };
                     self.engine.say(What::Reject { findings: errors_first(&diagnostics, &sources) });
+                    self.world_is_broken = true;
                 }
             }
         }
@@ -144,8 +158,10 @@ impl Driver {
 
     fn put_at_start(&mut self, name: &str) {
         let robots = self.robots.iter_mut().filter(|robot| name.is_empty() || &*robot.form.name == name);
-        for bridge in robots.filter_map(|robot| robot.bridge.as_mut()) {
+        for robot in robots {
+            let Some(bridge) = &mut robot.bridge else { continue };
             bridge.put_at_start();
+            self.engine.receive(&messages(&robot.form.name, &mut **bridge));
         }
     }
 
@@ -229,6 +245,12 @@ impl Driver {
             send(&mut self.robots, &bridge, &name, &value);
         }
     }
+}
+
+/// What a robot has said since it was last asked.
+fn messages(name: &Arc<str>, bridge: &mut dyn Bridge) -> Vec<Input> {
+    let said = bridge.sample().into_iter();
+    said.map(|(input, value)| Input { bridge: Arc::clone(name), name: input, value }).collect()
 }
 
 #[derive(Clone, Copy)]

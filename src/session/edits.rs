@@ -49,7 +49,13 @@ impl Heard {
     }
 
     /// Loads the first text of `file`, then every save of it; the compiler is made on the thread that uses it. Fails only where no thread can be started.
-    pub fn watch(self, file: PathBuf, first: Source, compiler: impl FnOnce() -> Compiler + Send + 'static, commands: Commands) -> io::Result<Edits> {
+    pub fn watch(
+        self,
+        file: PathBuf,
+        first: Source,
+        compiler: impl FnOnce() -> Compiler + Send + 'static,
+        commands: Commands,
+    ) -> io::Result<Edits> {
         let saves = self.notes.clone();
         let known = Watched { path: file.clone(), text: Some(Arc::clone(&first.text)) };
         let watch = Watch::new([known], move |saved| drop(saves.send(Note::Saved(saved))))?;

@@ -98,7 +98,13 @@ const STATUS: Duration = Duration::from_millis(500);
 pub type Library = Box<dyn Fn(&str) -> Result<String, String> + Send>;
 
 impl EngineThread {
-    pub fn start(options: Options, workshop: Workshop, library: Library, pacing: Pacing, news: impl Fn(News) + Clone + Send + 'static) -> Self {
+    pub fn start(
+        options: Options,
+        workshop: Workshop,
+        library: Library,
+        pacing: Pacing,
+        news: impl Fn(News) + Clone + Send + 'static,
+    ) -> Self {
         let (messages, inbox) = channel();
         let stoppers: Arc<Mutex<Vec<Stopper>>> = Arc::default();
         let shared = Arc::clone(&stoppers);
@@ -121,7 +127,8 @@ impl EngineThread {
             });
             news(News::Ended(end));
         };
-        let thread = std::thread::Builder::new().name("engine".to_string()).spawn(body).expect("a thread can be started");
+        let thread =
+            std::thread::Builder::new().name("engine".to_string()).spawn(body).expect("a thread can be started");
         EngineThread { commands: Commands { messages, stoppers }, thread: Some(thread), ended }
     }
 
@@ -184,7 +191,19 @@ impl<'n, N: Fn(News)> Loop<'n, N> {
     fn new(driver: Driver, pacing: Pacing, stoppers: Arc<Mutex<Vec<Stopper>>>, news: &'n N) -> Self {
         let now = Instant::now();
         let pace = Pace::new(pacing.rate, Duration::ZERO);
-        Loop { driver, pacing, pace, stoppers, news, batch: Vec::new(), pending: Arc::default(), flushed: now, started: now, loaded: false, status: Status::new() }
+        Loop {
+            driver,
+            pacing,
+            pace,
+            stoppers,
+            news,
+            batch: Vec::new(),
+            pending: Arc::default(),
+            flushed: now,
+            started: now,
+            loaded: false,
+            status: Status::new(),
+        }
     }
 
     fn run(&mut self, inbox: &Receiver<Message>) -> End {

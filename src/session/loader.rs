@@ -54,56 +54,25 @@ pub enum Unreadable {
 impl fmt::Display for Unreadable {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Missing {
-                path,
-                nearest: None,
-            } => write!(f, "{}: no such file", path.display()),
-            Self::Missing {
-                path,
-                nearest: Some(name),
-            } => {
-                write!(
-                    f,
-                    "{}: no such file; did you mean `{name}`?",
-                    path.display()
-                )
+            Self::Missing { path, nearest: None } => write!(f, "{}: no such file", path.display()),
+            Self::Missing { path, nearest: Some(name) } => {
+                write!(f, "{}: no such file; did you mean `{name}`?", path.display())
             }
             Self::NoFolder { path, folder } => {
-                write!(
-                    f,
-                    "{}: no such file; there is no folder `{}`",
-                    path.display(),
-                    folder.display()
-                )
+                write!(f, "{}: no such file; there is no folder `{}`", path.display(), folder.display())
             }
             Self::Directory { path } => {
                 write!(f, "{}: this is a folder; name a file in it", path.display())
             }
             Self::Empty { path } => write!(f, "{}: the file is empty", path.display()),
-            Self::NotUtf8 {
-                path,
-                line,
-                column,
-                byte,
-            } => write!(
-                f,
-                "{}:{line}:{column}: not UTF-8 (byte 0x{byte:02X}); save the file as UTF-8",
-                path.display()
-            ),
+            Self::NotUtf8 { path, line, column, byte } => {
+                write!(f, "{}:{line}:{column}: not UTF-8 (byte 0x{byte:02X}); save the file as UTF-8", path.display())
+            }
             Self::TooLarge { path } => {
-                write!(
-                    f,
-                    "{}: larger than {} MiB; is this a program?",
-                    path.display(),
-                    LIMIT >> 20
-                )
+                write!(f, "{}: larger than {} MiB; is this a program?", path.display(), LIMIT >> 20)
             }
             Self::Forbidden { path } => {
-                write!(
-                    f,
-                    "{}: you may not read this file; see its permissions",
-                    path.display()
-                )
+                write!(f, "{}: you may not read this file; see its permissions", path.display())
             }
             Self::Other { path, why } => write!(f, "{}: {why}", path.display()),
         }
@@ -141,25 +110,16 @@ fn explain(path: &Path, error: &io::Error) -> Unreadable {
         io::ErrorKind::NotFound => missing(path),
         io::ErrorKind::IsADirectory => Unreadable::Directory { path: path.into() },
         io::ErrorKind::PermissionDenied => Unreadable::Forbidden { path: path.into() },
-        _ => Unreadable::Other {
-            path: path.into(),
-            why: error.to_string(),
-        },
+        _ => Unreadable::Other { path: path.into(), why: error.to_string() },
     }
 }
 
 fn missing(path: &Path) -> Unreadable {
     let folder = folder(path);
     if !folder.exists() {
-        return Unreadable::NoFolder {
-            path: path.into(),
-            folder: folder.into(),
-        };
+        return Unreadable::NoFolder { path: path.into(), folder: folder.into() };
     }
-    Unreadable::Missing {
-        path: path.into(),
-        nearest: nearest_file(folder, path),
-    }
+    Unreadable::Missing { path: path.into(), nearest: nearest_file(folder, path) }
 }
 
 fn nearest_file(folder: &Path, path: &Path) -> Option<String> {
@@ -188,10 +148,5 @@ fn not_utf8(path: &Path, error: &std::string::FromUtf8Error) -> Unreadable {
     let end = error.utf8_error().valid_up_to();
     let valid = String::from_utf8_lossy(&error.as_bytes()[..end]);
     let place = Source::new("", valid.as_ref()).position(end);
-    Unreadable::NotUtf8 {
-        path: path.into(),
-        line: place.line,
-        column: place.column,
-        byte: error.as_bytes()[end],
-    }
+    Unreadable::NotUtf8 { path: path.into(), line: place.line, column: place.column, byte: error.as_bytes()[end] }
 }

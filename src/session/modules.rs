@@ -12,7 +12,8 @@ pub fn library(folder: PathBuf, read: impl Fn(&Path) + Send + 'static) -> Librar
             return Err(format!("`{module}` does not name a Lua file under the program's folder"));
         }
         let path = folder.join(file);
-        let text = std::fs::read_to_string(&path).map_err(|error| format!("{} can't be read: {error}", path.display()))?;
+        let text =
+            std::fs::read_to_string(&path).map_err(|error| format!("{} can't be read: {error}", path.display()))?;
         read(&path);
         Ok(text)
     })

@@ -44,16 +44,12 @@ pub struct Signals {
 impl Signals {
     /// Several of one kind that come faster than they are taken count as one.
     pub fn watch(on: impl Fn(Signal) + Send + 'static) -> io::Result<Signals> {
-        let mut signals =
-            signal_hook::iterator::Signals::new([SIGINT, SIGTERM, SIGHUP, SIGTSTP, SIGCONT])?;
+        let mut signals = signal_hook::iterator::Signals::new([SIGINT, SIGTERM, SIGHUP, SIGTSTP, SIGCONT])?;
         let handle = signals.handle();
         let thread = thread::Builder::new()
             .name("signals".into())
             .spawn(move || signals.forever().filter_map(Signal::of).for_each(on))?;
-        Ok(Signals {
-            handle,
-            thread: Some(thread),
-        })
+        Ok(Signals { handle, thread: Some(thread) })
     }
 }
 
@@ -113,9 +109,5 @@ fn restore_action(signal: i32, action: &libc::sigaction) -> io::Result<()> {
 }
 
 fn checked(result: i32) -> io::Result<()> {
-    if result == 0 {
-        Ok(())
-    } else {
-        Err(io::Error::last_os_error())
-    }
+    if result == 0 { Ok(()) } else { Err(io::Error::last_os_error()) }
 }

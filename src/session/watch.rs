@@ -52,10 +52,7 @@ enum Note {
 
 impl Watch {
     /// No change after this returns is missed. Fails only where no thread can be started.
-    pub fn new(
-        files: impl IntoIterator<Item = Watched>,
-        on: impl Fn(Saved) + Send + 'static,
-    ) -> io::Result<Watch> {
+    pub fn new(files: impl IntoIterator<Item = Watched>, on: impl Fn(Saved) + Send + 'static) -> io::Result<Watch> {
         let (notes, inbox) = mpsc::channel();
         let heard = notes.clone();
         let folders = Folders::new(move |happened| {
@@ -63,22 +60,10 @@ impl Watch {
             let _ = heard.send(Note::Happened(happened));
         });
         let began = Instant::now();
-        let mut watching = Watching {
-            began,
-            inbox,
-            folders,
-            files: BTreeMap::new(),
-            next_poll: POLL,
-            on,
-        };
+        let mut watching = Watching { began, inbox, folders, files: BTreeMap::new(), next_poll: POLL, on };
         watching.watch(files.into_iter().collect());
-        let thread = thread::Builder::new()
-            .name("watch".into())
-            .spawn(move || watching.run())?;
-        Ok(Watch {
-            notes,
-            thread: Some(thread),
-        })
+        let thread = thread::Builder::new().name("watch".into()).spawn(move || watching.run())?;
+        Ok(Watch { notes, thread: Some(thread) })
     }
 
     /// Watches these files from now on. One that was watched before keeps what is known of it, whatever its text here.
@@ -168,11 +153,10 @@ impl<F: Fn(Saved)> Watching<F> {
         let now = self.now();
         for (path, file) in &mut self.files {
             // The name is enough: a namesake in another folder costs one look in vain.
-            let concerned = happened.name.as_deref().is_none_or(|name| {
-                trail(path)
-                    .iter()
-                    .any(|place| place.file_name() == Some(name))
-            });
+            let concerned = happened
+                .name
+                .as_deref()
+                .is_none_or(|name| trail(path).iter().any(|place| place.file_name() == Some(name)));
             if concerned {
                 file.look(Stamp::of(path), now);
                 file.stir(happened.how, now);
@@ -184,9 +168,7 @@ impl<F: Fn(Saved)> Watching<F> {
         let now = self.now();
         let mut known = std::mem::take(&mut self.files);
         for Watched { path, text } in files {
-            let file = known
-                .remove(&path)
-                .unwrap_or_else(|| Settling::new(text, now));
+            let file = known.remove(&path).unwrap_or_else(|| Settling::new(text, now));
             self.files.insert(path, file);
         }
         self.poll();
@@ -204,12 +186,8 @@ impl<F: Fn(Saved)> Watching<F> {
 
     fn read_what_is_due(&mut self) -> Then {
         let now = self.now();
-        let due: Vec<PathBuf> = self
-            .files
-            .iter()
-            .filter(|(_, file)| file.is_due(now))
-            .map(|(path, _)| path.clone())
-            .collect();
+        let due: Vec<PathBuf> =
+            self.files.iter().filter(|(_, file)| file.is_due(now)).map(|(path, _)| path.clone()).collect();
         for path in due {
             if let Then::End = self.read(path) {
                 return Then::End;
@@ -246,9 +224,7 @@ impl<F: Fn(Saved)> Watching<F> {
     }
 
     fn is_due(&self, path: &PathBuf) -> bool {
-        self.files
-            .get(path)
-            .is_some_and(|file| file.is_due(self.now()))
+        self.files.get(path).is_some_and(|file| file.is_due(self.now()))
     }
 }
 

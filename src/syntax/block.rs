@@ -13,10 +13,7 @@ pub enum BlockEnd {
     /// Where its `]` stands.
     Closed(usize),
     /// Where it was probably meant to end, and what swallowed its `]`, if that can be told.
-    Open {
-        end: usize,
-        culprit: Option<Culprit>,
-    },
+    Open { end: usize, culprit: Option<Culprit> },
     /// Closed or not: nested too deep from this bracket on; `end` is where to go on reading.
     TooDeep { bracket: usize, end: usize },
 }
@@ -49,12 +46,8 @@ pub fn end_of_block(text: &str, inside: usize, indent: usize) -> BlockEnd {
                 Some(scan.swallowed(range, Culprit::LongBracket))
             }
             TokenKind::UnclosedComment => Some(scan.swallowed(range, Culprit::LongBracket)),
-            TokenKind::UnclosedString if closes(&text[range.clone()]) => {
-                scan.suspect(Culprit::String(range))
-            }
-            TokenKind::Comment if closes(&text[range.clone()]) => {
-                scan.suspect(Culprit::Comment(range))
-            }
+            TokenKind::UnclosedString if closes(&text[range.clone()]) => scan.suspect(Culprit::String(range)),
+            TokenKind::Comment if closes(&text[range.clone()]) => scan.suspect(Culprit::Comment(range)),
             _ => None,
         };
         if let Some(end) = found {
@@ -169,15 +162,9 @@ impl<'a> Scan<'a> {
     }
 
     /// From here to the text's end everything is in a long string or comment: look for forms in it line by line.
-    fn swallowed(
-        &mut self,
-        range: std::ops::Range<usize>,
-        culprit: fn(std::ops::Range<usize>) -> Culprit,
-    ) -> BlockEnd {
-        let opening = self.text[range.clone()]
-            .match_indices('[')
-            .nth(1)
-            .map_or(range.end, |(i, _)| range.start + i + 1);
+    fn swallowed(&mut self, range: std::ops::Range<usize>, culprit: fn(std::ops::Range<usize>) -> Culprit) -> BlockEnd {
+        let opening =
+            self.text[range.clone()].match_indices('[').nth(1).map_or(range.end, |(i, _)| range.start + i + 1);
 
         self.culprit.get_or_insert(culprit(range.start..opening));
         if self.candidate.is_none() {
@@ -185,9 +172,7 @@ impl<'a> Scan<'a> {
                 .match_indices('(')
                 .map(|(i, _)| range.start + i)
                 .filter(|&at| begins_form(&self.text[at..]).is_some())
-                .find(|&at| {
-                    column(self.text, range.start, at).is_some_and(|column| column <= self.indent)
-                });
+                .find(|&at| column(self.text, range.start, at).is_some_and(|column| column <= self.indent));
         }
         self.open(self.text.len())
     }
@@ -201,10 +186,7 @@ impl<'a> Scan<'a> {
 
     fn closed(&self, at: usize) -> BlockEnd {
         match self.too_deep {
-            Some(bracket) => BlockEnd::TooDeep {
-                bracket,
-                end: at + 1,
-            },
+            Some(bracket) => BlockEnd::TooDeep { bracket, end: at + 1 },
             None => BlockEnd::Closed(at),
         }
     }
@@ -213,14 +195,8 @@ impl<'a> Scan<'a> {
         let end = self.candidate.unwrap_or(at).min(at);
         let end = self.inside + self.text[self.inside..end].trim_end().len();
         match self.too_deep {
-            Some(bracket) => BlockEnd::TooDeep {
-                bracket,
-                end: end.max(bracket + 1),
-            },
-            None => BlockEnd::Open {
-                end,
-                culprit: self.culprit.take(),
-            },
+            Some(bracket) => BlockEnd::TooDeep { bracket, end: end.max(bracket + 1) },
+            None => BlockEnd::Open { end, culprit: self.culprit.take() },
         }
     }
 }
@@ -228,17 +204,9 @@ impl<'a> Scan<'a> {
 /// What speaks for a form where this text begins, with its `(`.
 fn begins_form(text: &str) -> Option<Evidence> {
     let inside = text[1..].trim_start_matches([' ', '\t']);
-    let word = &inside[..inside
-        .find(|c: char| !c.is_alphanumeric())
-        .unwrap_or(inside.len())];
+    let word = &inside[..inside.find(|c: char| !c.is_alphanumeric()).unwrap_or(inside.len())];
     Keyword::of(word)?;
     let next = inside[word.len()..].trim_start();
-    let second = &next[..next
-        .find(|c: char| !c.is_alphanumeric() && c != '_')
-        .unwrap_or(next.len())];
-    Some(if matches!(second, "" | "and" | "or") {
-        Evidence::Weak
-    } else {
-        Evidence::Strong
-    })
+    let second = &next[..next.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(next.len())];
+    Some(if matches!(second, "" | "and" | "or") { Evidence::Weak } else { Evidence::Strong })
 }

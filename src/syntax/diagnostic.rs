@@ -36,14 +36,7 @@ impl Diagnostic {
     }
 
     fn new(severity: Severity, code: Code, span: Span, message: impl Into<String>) -> Self {
-        Diagnostic {
-            code,
-            severity,
-            span,
-            message: message.into(),
-            help: None,
-            also: Vec::new(),
-        }
+        Diagnostic { code, severity, span, message: message.into(), help: None, also: Vec::new() }
     }
 
     pub fn help(mut self, sentence: impl Into<String>) -> Self {

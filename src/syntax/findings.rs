@@ -28,8 +28,7 @@ impl Findings {
 
     /// All of them in the order of the text.
     pub fn sorted(mut self) -> Vec<Diagnostic> {
-        self.list
-            .sort_by_key(|diagnostic| (diagnostic.span.start, diagnostic.span.end));
+        self.list.sort_by_key(|diagnostic| (diagnostic.span.start, diagnostic.span.end));
         self.list
     }
 }

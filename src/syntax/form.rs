@@ -54,16 +54,11 @@ impl<'a> Text<'a> {
     /// A group's bracket and first word.
     pub fn head(self, group: &Group) -> Span {
         let first = group.nodes.first().filter(|node| node.is(PieceKind::Word));
-        first.map_or(group.open_span(self.file), |word| {
-            self.span(group.start as usize, word.range().end)
-        })
+        first.map_or(group.open_span(self.file), |word| self.span(group.start as usize, word.range().end))
     }
 
     fn name(self, node: &Node) -> Name {
-        Name {
-            text: Arc::from(self.of(node)),
-            span: node.span(self.file),
-        }
+        Name { text: Arc::from(self.of(node)), span: node.span(self.file) }
     }
 }
 
@@ -79,18 +74,11 @@ pub struct Form<'a> {
 
 impl<'a> Form<'a> {
     pub fn new(text: Text<'a>, group: &'a Group, keyword: Keyword) -> Self {
-        Form {
-            text,
-            group,
-            keyword,
-            rest: &group.nodes[1..],
-            fault: None,
-        }
+        Form { text, group, keyword, rest: &group.nodes[1..], fault: None }
     }
 
     pub fn span(&self) -> Span {
-        self.text
-            .span(self.group.start as usize, self.group.end as usize)
+        self.text.span(self.group.start as usize, self.group.end as usize)
     }
 
     pub fn fail<T>(&mut self, diagnostic: Diagnostic) -> Option<T> {
@@ -159,7 +147,8 @@ impl<'a> Form<'a> {
     fn stuck_together(&self) -> &'a [Node] {
         let mut end = self.rest.first().map_or(0, |node| node.range().start);
         let stuck = self.rest.iter().take_while(|node| {
-            let in_a_name = matches!(node, Node::Leaf(piece) if !matches!(piece.kind, PieceKind::Block | PieceKind::UnclosedBlock));
+            let in_a_name =
+                matches!(node, Node::Leaf(piece) if !matches!(piece.kind, PieceKind::Block | PieceKind::UnclosedBlock));
             let follows = in_a_name && node.range().start == end;
             end = node.range().end;
             follows
@@ -187,34 +176,22 @@ impl<'a> Form<'a> {
     /// The inside of a block. That of one which is not closed is left empty, so that nobody tries to make sense of it.
     pub fn block_of(&self, node: &Node) -> Block {
         let range = node.range();
-        let end = if node.is(PieceKind::Block) {
-            range.end - 1
-        } else {
-            range.start + 1
-        };
+        let end = if node.is(PieceKind::Block) { range.end - 1 } else { range.start + 1 };
         let inside = range.start + 1..end;
-        Block {
-            text: Arc::from(&self.text.text[inside.clone()]),
-            span: self.text.span(inside.start, inside.end),
-        }
+        Block { text: Arc::from(&self.text.text[inside.clone()]), span: self.text.span(inside.start, inside.end) }
     }
 
     /// Stands for a block that is missing, so that at least the name is known.
     pub fn empty_block(&self) -> Block {
         let end = self.group.end as usize - usize::from(self.group.close == Close::Bracket);
-        Block {
-            text: Arc::from(""),
-            span: self.text.span(end, end),
-        }
+        Block { text: Arc::from(""), span: self.text.span(end, end) }
     }
 
     /// Nothing more may come.
     pub fn finish(&mut self) {
         if let Some(node) = self.rest.first() {
-            let diagnostic = self.error(
-                self.text.point(node),
-                format!("{} is too much here", self.text.describe(node)),
-            );
+            let diagnostic =
+                self.error(self.text.point(node), format!("{} is too much here", self.text.describe(node)));
             self.fail::<()>(diagnostic);
         }
     }
@@ -234,17 +211,11 @@ impl<'a> Form<'a> {
     }
 
     pub fn error(&self, span: Span, message: impl Into<String>) -> Diagnostic {
-        Diagnostic::error(Code::BadForm, span, message)
-            .help(format!("it is written {}", self.shape()))
+        Diagnostic::error(Code::BadForm, span, message).help(format!("it is written {}", self.shape()))
     }
 
     fn shape(&self) -> String {
-        self.keyword
-            .shape()
-            .split(" or ")
-            .map(|shape| format!("`{shape}`"))
-            .collect::<Vec<_>>()
-            .join(" or ")
+        self.keyword.shape().split(" or ").map(|shape| format!("`{shape}`")).collect::<Vec<_>>().join(" or ")
     }
 
     /// The form ends where `what` should come.
@@ -260,10 +231,7 @@ impl<'a> Form<'a> {
     /// Something else stands where `what` should.
     pub fn unexpected(&self, node: &Node, what: &str) -> Diagnostic {
         let found = self.text.describe(node);
-        let mut error = self.error(
-            self.text.point(node),
-            format!("{found} stands where {what} is expected"),
-        );
+        let mut error = self.error(self.text.point(node), format!("{found} stands where {what} is expected"));
         if node.is(PieceKind::Other) {
             error.code = Code::StrayCharacter;
         }
@@ -279,14 +247,12 @@ impl<'a> Form<'a> {
         let span = node.span(self.text.file).to(last.span(self.text.file));
         let written = &self.text.text[span.range()];
         let is_code = |node: &Node| match node {
-            Node::Leaf(piece) => !matches!(
-                piece.kind,
-                PieceKind::Block | PieceKind::UnclosedBlock | PieceKind::UnclosedText
-            ),
+            Node::Leaf(piece) => {
+                !matches!(piece.kind, PieceKind::Block | PieceKind::UnclosedBlock | PieceKind::UnclosedText)
+            }
             Node::Group(group) => group.keyword.is_none(),
         };
-        let begins =
-            node.is(PieceKind::Word) || node.is(PieceKind::Text) || matches!(node, Node::Group(_));
+        let begins = node.is(PieceKind::Word) || node.is(PieceKind::Text) || matches!(node, Node::Group(_));
         if !begins || written.contains(['\n', '\r']) || !self.rest.iter().all(is_code) {
             return self.unexpected(node, what);
         }
@@ -296,8 +262,7 @@ impl<'a> Form<'a> {
                 .help(format!("write `({})`", shortened(written)));
         }
         let message = format!("{what} belongs in square brackets: it is a block of Lua");
-        self.error(span, message)
-            .help(format!("write `[{}]`", shortened(&self.in_lua(written))))
+        self.error(span, message).help(format!("write `[{}]`", shortened(&self.in_lua(written))))
     }
 
     /// A line of Smalltalk as it is written in Lua, as far as assignments and comparisons go.
@@ -305,13 +270,7 @@ impl<'a> Form<'a> {
         if code.contains(":=") {
             return code.replace(":=", "=");
         }
-        let compared = self.keyword == Keyword::Event
-            && !code.contains(['~', '<', '>'])
-            && !code.contains("==");
-        if compared {
-            code.replace('=', "==")
-        } else {
-            code.to_string()
-        }
+        let compared = self.keyword == Keyword::Event && !code.contains(['~', '<', '>']) && !code.contains("==");
+        if compared { code.replace('=', "==") } else { code.to_string() }
     }
 }

@@ -11,11 +11,5 @@ pub fn column(text: &str, from: usize, at: usize) -> Option<usize> {
 }
 
 fn width(blanks: &str) -> usize {
-    blanks.bytes().fold(0, |column, byte| {
-        if byte == b'\t' {
-            (column / TAB + 1) * TAB
-        } else {
-            column + 1
-        }
-    })
+    blanks.bytes().fold(0, |column, byte| if byte == b'\t' { (column / TAB + 1) * TAB } else { column + 1 })
 }

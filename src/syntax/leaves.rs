@@ -13,18 +13,9 @@ use super::reader::Node;
 pub fn bridge(form: &mut Form) -> Option<Bridge> {
     let name = form.lua_name("the bridge's name")?;
     let kind = form.name("the kind of robot")?;
-    let config = if form.rest.is_empty() {
-        None
-    } else {
-        Some(form.block("the configuration")?)
-    };
+    let config = if form.rest.is_empty() { None } else { Some(form.block("the configuration")?) };
     form.finish();
-    Some(Bridge {
-        span: form.span(),
-        name,
-        kind,
-        config,
-    })
+    Some(Bridge { span: form.span(), name, kind, config })
 }
 
 pub fn import(form: &mut Form) -> Option<Import> {
@@ -42,24 +33,15 @@ pub fn import(form: &mut Form) -> Option<Import> {
         let diagnostic = form.error(node.span(form.text.file), "the file's name is empty");
         return form.fail(diagnostic);
     }
-    let file = Name {
-        text: Arc::from(text),
-        span: form.text.span(inside.start, inside.end),
-    };
+    let file = Name { text: Arc::from(text), span: form.text.span(inside.start, inside.end) };
     form.finish();
-    Some(Import {
-        span: form.span(),
-        file,
-    })
+    Some(Import { span: form.span(), file })
 }
 
 fn no_quotes(form: &Form, node: &Node) -> Diagnostic {
     let error = form.unexpected(node, "a file's name in quotes");
     if node.is(PieceKind::Word) {
-        return error.help(format!(
-            "write `(import \"{}\")`",
-            shortened(form.text.of(node))
-        ));
+        return error.help(format!("write `(import \"{}\")`", shortened(form.text.of(node))));
     }
     error.help("a file's name is written in quotes of one kind: `\"file.lrp\"` or `'file.lrp'`")
 }
@@ -67,10 +49,7 @@ fn no_quotes(form: &Form, node: &Node) -> Diagnostic {
 pub fn export(form: &mut Form) -> Option<Export> {
     let machine = form.name("the name of a machine")?;
     form.finish();
-    Some(Export {
-        span: form.span(),
-        machine,
-    })
+    Some(Export { span: form.span(), machine })
 }
 
 pub fn var(form: &mut Form) -> Option<Var> {
@@ -84,11 +63,7 @@ pub fn var(form: &mut Form) -> Option<Var> {
     if init.is_some() {
         form.finish();
     }
-    Some(Var {
-        span: form.span(),
-        init: init.unwrap_or_else(|| form.empty_block()),
-        name,
-    })
+    Some(Var { span: form.span(), init: init.unwrap_or_else(|| form.empty_block()), name })
 }
 
 /// What to say of `(var x [5])`, `(var x = [5])`, `(var x)`.
@@ -96,26 +71,17 @@ fn no_assignment(form: &Form, name: &Name) -> Diagnostic {
     let message = format!("the variable `{}` lacks its initial value", name.text);
     let example = format!("write `(var {} := [0])`", name.text);
     match form.rest {
-        [] => Diagnostic {
-            message,
-            ..form.missing("")
+        [] => Diagnostic { message, ..form.missing("") }.help(example),
+        [node, ..] if node.is(PieceKind::Block) => {
+            form.error(node.span(form.text.file), format!("`:=` is missing between `{}` and its value", name.text))
         }
-        .help(example),
-        [node, ..] if node.is(PieceKind::Block) => form.error(
-            node.span(form.text.file),
-            format!("`:=` is missing between `{}` and its value", name.text),
-        ),
         [node, ..] if assigns_otherwise(form, node) => form.error(
             node.span(form.text.file),
-            format!(
-                "an initial value is given with `:=`, not `{}`",
-                form.text.of(node)
-            ),
+            format!("an initial value is given with `:=`, not `{}`", form.text.of(node)),
         ),
         [node] if node.is(PieceKind::Word) || node.is(PieceKind::Text) => {
             let value = shortened(form.text.of(node));
-            form.unexpected(node, "`:=`")
-                .help(format!("write `(var {} := [{value}])`", name.text))
+            form.unexpected(node, "`:=`").help(format!("write `(var {} := [{value}])`", name.text))
         }
         [node, ..] => form.unexpected(node, "`:=`"),
     }
@@ -130,10 +96,7 @@ pub fn event(form: &mut Form) -> Option<Event> {
     let block = match form.rest {
         [node, ..] if assigns_otherwise(form, node) => {
             let diagnostic = form
-                .error(
-                    node.span(form.text.file),
-                    format!("`{}` is not needed here", form.text.of(node)),
-                )
+                .error(node.span(form.text.file), format!("`{}` is not needed here", form.text.of(node)))
                 .help(format!("write `(event {} [condition])`", name.text));
             form.fail(diagnostic)
         }
@@ -145,22 +108,14 @@ pub fn event(form: &mut Form) -> Option<Event> {
     if block.is_some() {
         form.finish();
     }
-    Some(Event {
-        span: form.span(),
-        block: block.unwrap_or_else(|| form.empty_block()),
-        name,
-    })
+    Some(Event { span: form.span(), block: block.unwrap_or_else(|| form.empty_block()), name })
 }
 
 pub fn spawn(form: &mut Form) -> Option<Spawn> {
     let machine = form.name("the name of a machine")?;
     let state = form.name("the state to start in")?;
     form.finish();
-    Some(Spawn {
-        span: form.span(),
-        machine,
-        state,
-    })
+    Some(Spawn { span: form.span(), machine, state })
 }
 
 /// `(running [b])`, `(onexit [b])`, `(onpause [b])`, `(onresume [b])`
@@ -183,8 +138,7 @@ pub fn one_action(form: &mut Form) {
             }
         };
         let message = format!("`{keyword}` takes one block");
-        let diagnostic =
-            Diagnostic::error(Code::BadForm, form.text.point(node), message).help(help);
+        let diagnostic = Diagnostic::error(Code::BadForm, form.text.point(node), message).help(help);
         form.fail::<()>(diagnostic);
     }
     form.finish();

@@ -126,10 +126,7 @@ impl Iterator for Tokens<'_> {
             [b, ..] if starts_name(b) => self.name(),
             _ => self.symbol(),
         };
-        Some(Token {
-            kind,
-            range: start..self.at,
-        })
+        Some(Token { kind, range: start..self.at })
     }
 }
 
@@ -145,21 +142,13 @@ impl Tokens<'_> {
     fn name(&mut self) -> TokenKind {
         let start = self.at;
         self.skip_while(continues_name);
-        if is_keyword(&self.code[start..self.at]) {
-            TokenKind::Keyword
-        } else {
-            TokenKind::Name
-        }
+        if is_keyword(&self.code[start..self.at]) { TokenKind::Keyword } else { TokenKind::Name }
     }
 
     fn comment(&mut self) -> TokenKind {
         self.at += 2;
         if let Some(level) = self.long_bracket() {
-            return if self.skip_long(level) {
-                TokenKind::Comment
-            } else {
-                TokenKind::UnclosedComment
-            };
+            return if self.skip_long(level) { TokenKind::Comment } else { TokenKind::UnclosedComment };
         }
         self.skip_while(|b| b != b'\n' && b != b'\r');
         TokenKind::Comment
@@ -227,10 +216,7 @@ impl Tokens<'_> {
     }
 
     fn skip_char(&mut self) {
-        self.at += self.code[self.at..]
-            .chars()
-            .next()
-            .map_or(0, char::len_utf8);
+        self.at += self.code[self.at..].chars().next().map_or(0, char::len_utf8);
     }
 
     /// Takes in what Lua's own lexer would before it converts the number.
@@ -250,11 +236,7 @@ impl Tokens<'_> {
         let length = match *self.rest() {
             [b'.', b'.', b'.', ..] => 3,
             [b'=' | b'~' | b'<' | b'>', b'=', ..] => 2,
-            [b'.', b'.', ..]
-            | [b':', b':', ..]
-            | [b'/', b'/', ..]
-            | [b'<', b'<', ..]
-            | [b'>', b'>', ..] => 2,
+            [b'.', b'.', ..] | [b':', b':', ..] | [b'/', b'/', ..] | [b'<', b'<', ..] | [b'>', b'>', ..] => 2,
             [b, ..] if b"+-*/%^#&~|<>=(){}[];:,.".contains(&b) => 1,
             _ => {
                 self.skip_char();

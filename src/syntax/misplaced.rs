@@ -9,16 +9,9 @@ use super::pieces::PieceKind;
 use super::reader::{Group, Node};
 
 /// A known form in the wrong place.
-pub fn misplaced(
-    text: Text,
-    keyword: Keyword,
-    group: &Group,
-    parent: &Group,
-    place: Place,
-) -> Diagnostic {
+pub fn misplaced(text: Text, keyword: Keyword, group: &Group, parent: &Group, place: Place) -> Diagnostic {
     let message = format!("{} can't stand {place}", keyword.with_article());
-    let error = Diagnostic::error(Code::MisplacedForm, text.head(group), message)
-        .help(belongs(keyword, place));
+    let error = Diagnostic::error(Code::MisplacedForm, text.head(group), message).help(belongs(keyword, place));
     if place != Place::Top && group.begins_line && group.indent <= parent.indent {
         return error.also(text.head(parent), "is this closed too late?");
     }
@@ -39,24 +32,13 @@ fn belongs(keyword: Keyword, place: Place) -> String {
 /// A form that begins with a word no form begins with, and the form that was probably meant.
 pub fn unknown(text: Text, first: &Node, place: Place) -> (Diagnostic, Option<Keyword>) {
     let word = text.of(first);
-    let here = Keyword::ALL
-        .iter()
-        .filter(|keyword| keyword.may_stand(place))
-        .map(|keyword| keyword.name());
+    let here = Keyword::ALL.iter().filter(|keyword| keyword.may_stand(place)).map(|keyword| keyword.name());
     let all = Keyword::ALL.iter().map(|keyword| keyword.name());
-    let guess = nearest(word, here)
-        .or_else(|| nearest(word, all))
-        .and_then(Keyword::of);
-    let error = Diagnostic::error(
-        Code::UnknownForm,
-        first.span(text.file),
-        format!("there is no form `{}`", shortened(word)),
-    );
+    let guess = nearest(word, here).or_else(|| nearest(word, all)).and_then(Keyword::of);
+    let error =
+        Diagnostic::error(Code::UnknownForm, first.span(text.file), format!("there is no form `{}`", shortened(word)));
     match guess {
-        Some(keyword) => (
-            error.help(format!("did you mean `{}`?", keyword.name())),
-            guess,
-        ),
+        Some(keyword) => (error.help(format!("did you mean `{}`?", keyword.name())), guess),
         None => (error.help(choices(place)), None),
     }
 }
@@ -64,14 +46,8 @@ pub fn unknown(text: Text, first: &Node, place: Place) -> (Diagnostic, Option<Ke
 /// Brackets that begin with anything but a word.
 pub fn bad_first_node(text: Text, group: &Group, place: Place) -> Diagnostic {
     let (span, message) = match group.nodes.first() {
-        None => (
-            text.span(group.start as usize, group.end as usize),
-            "these brackets are empty".to_string(),
-        ),
-        Some(first) => (
-            text.point(first),
-            format!("a form can't begin with {}", text.describe(first)),
-        ),
+        None => (text.span(group.start as usize, group.end as usize), "these brackets are empty".to_string()),
+        Some(first) => (text.point(first), format!("a form can't begin with {}", text.describe(first))),
     };
     Diagnostic::error(Code::BadForm, span, message).help(choices(place))
 }
@@ -93,38 +69,18 @@ fn choices(place: Place) -> String {
 pub fn outside(text: Text, nodes: &[Node], place: Place) -> Diagnostic {
     let first = &nodes[0];
     let start = first.range().start;
-    let line_end = text.text[start..]
-        .find(['\n', '\r'])
-        .map_or(text.text.len(), |i| start + i);
-    let end = nodes
-        .last()
-        .map_or(line_end, |last| last.range().end)
-        .min(line_end);
+    let line_end = text.text[start..].find(['\n', '\r']).map_or(text.text.len(), |i| start + i);
+    let end = nodes.last().map_or(line_end, |last| last.range().end).min(line_end);
     let (code, help) = if first.is(PieceKind::Other) {
-        (
-            Code::StrayCharacter,
-            "remove it; a comment begins with `;`".to_string(),
-        )
+        (Code::StrayCharacter, "remove it; a comment begins with `;`".to_string())
     } else if first.is(PieceKind::Block) && place == Place::State {
-        (
-            Code::BadForm,
-            "say when it is to run: `(onentry [..])`, `(running [..])` or `(onexit [..])`"
-                .to_string(),
-        )
+        (Code::BadForm, "say when it is to run: `(onentry [..])`, `(running [..])` or `(onexit [..])`".to_string())
     } else if first.is(PieceKind::Block) {
         (Code::BadForm, choices(place))
-    } else if let Some(keyword) =
-        Keyword::of(text.of(first)).filter(|keyword| keyword.may_stand(place))
-    {
-        (
-            Code::BadForm,
-            format!("a form begins with a bracket: write `({}`", keyword.name()),
-        )
+    } else if let Some(keyword) = Keyword::of(text.of(first)).filter(|keyword| keyword.may_stand(place)) {
+        (Code::BadForm, format!("a form begins with a bracket: write `({}`", keyword.name()))
     } else {
-        (
-            Code::BadForm,
-            "a comment begins with `;`, a form with `(`".to_string(),
-        )
+        (Code::BadForm, "a comment begins with `;`, a form with `(`".to_string())
     };
     let message = format!("{} can't stand by itself {place}", text.describe(first));
     Diagnostic::error(code, text.span(start, end), message).help(help)

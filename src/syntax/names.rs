@@ -20,16 +20,13 @@ pub fn check_lua_name(word: &str, span: Span) -> Result<(), Diagnostic> {
     let shown = shortened(word);
     if is_keyword(word) {
         let message = format!("`{shown}` is a keyword of Lua, so blocks couldn't use it as a name");
-        return Err(Diagnostic::error(Code::BadName, span, message)
-            .help(format!("choose another, such as `{word}_`")));
+        return Err(Diagnostic::error(Code::BadName, span, message).help(format!("choose another, such as `{word}_`")));
     }
     if !is_name(word) {
         let message = format!("`{shown}` is no name in Lua, so blocks couldn't use it");
         let help = match suggestion(word) {
             Some(better) => format!("write `{better}`"),
-            None => {
-                "use the letters a to z, digits and `_`, not beginning with a digit".to_string()
-            }
+            None => "use the letters a to z, digits and `_`, not beginning with a digit".to_string(),
         };
         return Err(Diagnostic::error(Code::BadName, span, message).help(help));
     }

@@ -12,12 +12,8 @@ pub fn nearest<'a>(wanted: &str, known: impl IntoIterator<Item = &'a str>) -> Op
         }
         let candidate = fold(word);
         let longer = folded.len().max(candidate.len());
-        let limit = best.map_or(cut_off(longer), |(least, _)| {
-            cut_off(longer).min(least.saturating_sub(1))
-        });
-        if folded.len().abs_diff(candidate.len()) > limit
-            || folded.len().min(candidate.len()) <= limit
-        {
+        let limit = best.map_or(cut_off(longer), |(least, _)| cut_off(longer).min(least.saturating_sub(1)));
+        if folded.len().abs_diff(candidate.len()) > limit || folded.len().min(candidate.len()) <= limit {
             continue;
         }
         let distance = distance(&folded, &candidate);
@@ -32,10 +28,7 @@ pub fn nearest<'a>(wanted: &str, known: impl IntoIterator<Item = &'a str>) -> Op
 const LONGEST: usize = 64;
 
 fn fold(word: &str) -> Vec<char> {
-    word.chars()
-        .take(LONGEST)
-        .flat_map(char::to_lowercase)
-        .collect()
+    word.chars().take(LONGEST).flat_map(char::to_lowercase).collect()
 }
 
 fn cut_off(length: usize) -> usize {

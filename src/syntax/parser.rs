@@ -28,35 +28,20 @@ pub struct Parsed {
 pub fn parse(source: &Source, file: FileId) -> Parsed {
     let text = &*source.text;
     if text.len() > MAX_BYTES {
-        let message = format!(
-            "the text is too large: {} MB, where {} MB is the most",
-            text.len() >> 20,
-            MAX_BYTES >> 20
-        );
-        let error = Diagnostic::error(Code::TooLarge, Span::new(file, 0, 0), message)
-            .help("check that this is the right file");
-        return Parsed {
-            tree: Tree::default(),
-            diagnostics: vec![error],
-        };
+        let message =
+            format!("the text is too large: {} MB, where {} MB is the most", text.len() >> 20, MAX_BYTES >> 20);
+        let error =
+            Diagnostic::error(Code::TooLarge, Span::new(file, 0, 0), message).help("check that this is the right file");
+        return Parsed { tree: Tree::default(), diagnostics: vec![error] };
     }
     if let Some(error) = control_characters(text, file) {
-        return Parsed {
-            tree: Tree::default(),
-            diagnostics: vec![error],
-        };
+        return Parsed { tree: Tree::default(), diagnostics: vec![error] };
     }
     let mut findings = Findings::default();
     let root = read(text, file, &mut findings);
-    let mut parser = Parser {
-        text: Text { text, file },
-        findings,
-    };
+    let mut parser = Parser { text: Text { text, file }, findings };
     let forms = parser.items(&root, &root.nodes, Place::Top, Parser::top_form);
-    Parsed {
-        tree: Tree { forms },
-        diagnostics: parser.findings.sorted(),
-    }
+    Parsed { tree: Tree { forms }, diagnostics: parser.findings.sorted() }
 }
 
 struct Parser<'a> {
@@ -83,16 +68,11 @@ impl<'a> Parser<'a> {
         let mut items = Vec::new();
         let mut rest = nodes;
         while let Some(node) = rest.first() {
-            let leaves = rest
-                .iter()
-                .take_while(|node| matches!(node, Node::Leaf(_)))
-                .count();
+            let leaves = rest.iter().take_while(|node| matches!(node, Node::Leaf(_))).count();
             match node {
                 Node::Group(group) => items.extend(self.form(group, parent, place, item)),
                 Node::Leaf(_) if parent.hurt => {}
-                Node::Leaf(_) => self
-                    .findings
-                    .add(outside(self.text, &rest[..leaves], place)),
+                Node::Leaf(_) => self.findings.add(outside(self.text, &rest[..leaves], place)),
             }
             rest = &rest[leaves.max(1)..];
         }
@@ -109,8 +89,7 @@ impl<'a> Parser<'a> {
         let (keyword, reading) = self.keyword(group, place)?;
         if !keyword.may_stand(place) {
             if reading == Reading::Sure {
-                self.findings
-                    .add(misplaced(self.text, keyword, group, parent, place));
+                self.findings.add(misplaced(self.text, keyword, group, parent, place));
             }
             return None;
         }
@@ -150,9 +129,7 @@ impl<'a> Parser<'a> {
             return self.findings.add(fault);
         }
         // Of a form that is both cut off and not closed, say what it lacks.
-        let unclosed = |found: &Diagnostic| {
-            found.code == Code::UnclosedBracket && found.span.start == group.start
-        };
+        let unclosed = |found: &Diagnostic| found.code == Code::UnclosedBracket && found.span.start == group.start;
         if let Some(found) = self.findings.find(unclosed) {
             let also = std::mem::take(&mut found.also);
             *found = Diagnostic { also, ..fault };
@@ -176,11 +153,7 @@ impl<'a> Parser<'a> {
     fn machine(&mut self, form: &mut Form<'a>) -> Option<Machine> {
         let name = form.title("the machine's name");
         let items = self.items(form.group, form.rest, Place::Machine, Parser::machine_item);
-        Some(Machine {
-            span: form.span(),
-            name: name?,
-            items,
-        })
+        Some(Machine { span: form.span(), name: name?, items })
     }
 
     fn machine_item(&mut self, form: &mut Form<'a>) -> Option<MachineItem> {
@@ -198,11 +171,7 @@ impl<'a> Parser<'a> {
     fn state(&mut self, form: &mut Form<'a>) -> Option<State> {
         let name = form.title("the state's name");
         let items = self.items(form.group, form.rest, Place::State, Parser::state_item);
-        Some(State {
-            span: form.span(),
-            name: name?,
-            items,
-        })
+        Some(State { span: form.span(), name: name?, items })
     }
 
     fn state_item(&mut self, form: &mut Form<'a>) -> Option<StateItem> {

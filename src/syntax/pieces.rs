@@ -50,31 +50,16 @@ impl Piece {
     }
 
     pub fn is_trivia(self) -> bool {
-        matches!(
-            self.kind,
-            PieceKind::Space | PieceKind::Comment | PieceKind::Junk | PieceKind::Unread
-        )
+        matches!(self.kind, PieceKind::Space | PieceKind::Comment | PieceKind::Junk | PieceKind::Unread)
     }
 }
 
 /// Cuts up the whole text; what is wrong with single pieces is added to the findings.
 pub fn pieces(text: &str, file: FileId, findings: &mut Findings) -> Vec<Piece> {
-    let mut cutter = Cutter {
-        text,
-        file,
-        at: 0,
-        pieces: Vec::new(),
-        indent: 0,
-        fresh_line: true,
-        open: Vec::new(),
-    };
+    let mut cutter = Cutter { text, file, at: 0, pieces: Vec::new(), indent: 0, fresh_line: true, open: Vec::new() };
     while cutter.at < text.len() {
         let start = cutter.at;
-        let kind = if findings.is_full() {
-            cutter.give_up()
-        } else {
-            cutter.cut(findings)
-        };
+        let kind = if findings.is_full() { cutter.give_up() } else { cutter.cut(findings) };
         cutter.push(kind, start);
     }
     cutter.pieces
@@ -90,16 +75,8 @@ pub fn control_characters(text: &str, file: FileId) -> Option<Diagnostic> {
         n => format!(", and {n} more further on"),
     };
     let span = Span::new(file, at, at + first.len_utf8());
-    let name = if first == '\0' {
-        "NUL byte".to_string()
-    } else {
-        format!("control character U+{:04X}", first as u32)
-    };
-    let error = Diagnostic::error(
-        Code::StrayCharacter,
-        span,
-        format!("a {name} stands here{more}"),
-    );
+    let name = if first == '\0' { "NUL byte".to_string() } else { format!("control character U+{:04X}", first as u32) };
+    let error = Diagnostic::error(Code::StrayCharacter, span, format!("a {name} stands here{more}"));
     Some(error.help("a program is plain text: remove it, or check that this is the right file"))
 }
 
@@ -139,13 +116,7 @@ struct Cutter<'a> {
 impl Cutter<'_> {
     fn push(&mut self, kind: PieceKind, start: usize) {
         let begins_line = self.fresh_line && kind != PieceKind::Space;
-        self.pieces.push(Piece {
-            kind,
-            start: start as u32,
-            end: self.at as u32,
-            indent: self.indent,
-            begins_line,
-        });
+        self.pieces.push(Piece { kind, start: start as u32, end: self.at as u32, indent: self.indent, begins_line });
         match kind {
             PieceKind::Space => self.after_space(start),
             PieceKind::Open => self.open.push(self.indent),
@@ -214,9 +185,7 @@ impl Cutter<'_> {
 
     fn word(&mut self) -> PieceKind {
         let rest = &self.text[self.at..];
-        let end = rest
-            .char_indices()
-            .find(|&(i, c)| !is_word(c) || rest[i..].starts_with("->"));
+        let end = rest.char_indices().find(|&(i, c)| !is_word(c) || rest[i..].starts_with("->"));
         self.at += end.map_or(rest.len(), |(i, _)| i);
         PieceKind::Word
     }
@@ -224,10 +193,7 @@ impl Cutter<'_> {
     fn invisible(&mut self, first: char, findings: &mut Findings) -> PieceKind {
         let start = self.at;
         self.skip_while(is_invisible);
-        let message = format!(
-            "an invisible character stands here (U+{:04X})",
-            first as u32
-        );
+        let message = format!("an invisible character stands here (U+{:04X})", first as u32);
         findings.add(
             Diagnostic::error(Code::StrayCharacter, self.span(start, self.at), message)
                 .help("remove it: it often comes along when text is copied from a web page"),
@@ -239,12 +205,8 @@ impl Cutter<'_> {
         let start = self.at;
         self.skip_while(|c| c == ']');
         findings.add(
-            Diagnostic::error(
-                Code::StrayBracket,
-                self.span(start, self.at),
-                "this `]` closes nothing",
-            )
-            .help("remove it, or add the `[` where the block begins"),
+            Diagnostic::error(Code::StrayBracket, self.span(start, self.at), "this `]` closes nothing")
+                .help("remove it, or add the `[` where the block begins"),
         );
         PieceKind::Junk
     }
@@ -259,25 +221,15 @@ impl Cutter<'_> {
         let line = &rest[..end];
         let other = if quote == '"' { '\'' } else { '"' };
         let (length, help) = match line.find(other) {
-            Some(i) => (
-                i + 1,
-                format!("it begins with `{quote}`, so end it with `{quote}` too"),
-            ),
+            Some(i) => (i + 1, format!("it begins with `{quote}`, so end it with `{quote}` too")),
             None => (
-                line[..line.find(')').unwrap_or(line.len())]
-                    .trim_end()
-                    .len(),
+                line[..line.find(')').unwrap_or(line.len())].trim_end().len(),
                 self.where_to_close(quote, &rest[end..]),
             ),
         };
         self.at += 1 + length;
         findings.add(
-            Diagnostic::error(
-                Code::UnclosedString,
-                self.span(start, self.at),
-                "this string is not closed",
-            )
-            .help(help),
+            Diagnostic::error(Code::UnclosedString, self.span(start, self.at), "this string is not closed").help(help),
         );
         PieceKind::UnclosedText
     }
@@ -287,11 +239,7 @@ impl Cutter<'_> {
         if last.is_none_or(|piece| &self.text[piece.range()] != Keyword::Import.name()) {
             return format!("only a file's name after `import` has quotes: remove `{quote}`");
         }
-        let reason = if after.starts_with(';') {
-            "`;` begins a comment"
-        } else {
-            "it can't go on in the next line"
-        };
+        let reason = if after.starts_with(';') { "`;` begins a comment" } else { "it can't go on in the next line" };
         format!("add `{quote}` where the string ends: {reason}")
     }
 
@@ -318,11 +266,7 @@ impl Cutter<'_> {
 
     fn unclosed_block(&self, start: usize, culprit: Option<Culprit>) -> Diagnostic {
         let end = self.at;
-        let error = Diagnostic::error(
-            Code::UnclosedBlock,
-            self.span(start, start + 1),
-            "this block is not closed",
-        );
+        let error = Diagnostic::error(Code::UnclosedBlock, self.span(start, start + 1), "this block is not closed");
         match culprit {
             Some(Culprit::String(range)) => error
                 .also(self.span(range.start, range.end), "this string is not closed, and takes in the `]`")
@@ -343,10 +287,6 @@ impl Cutter<'_> {
 }
 
 pub fn too_deep(span: Span) -> Diagnostic {
-    let message = format!(
-        "brackets are nested more than {} deep",
-        super::block::MAX_DEPTH
-    );
-    Diagnostic::error(Code::NestedTooDeep, span, message)
-        .help("take it apart, or check that this is the right file")
+    let message = format!("brackets are nested more than {} deep", super::block::MAX_DEPTH);
+    Diagnostic::error(Code::NestedTooDeep, span, message).help("take it apart, or check that this is the right file")
 }

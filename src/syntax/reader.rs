@@ -70,17 +70,8 @@ impl Group {
     }
 
     fn whole_text(text: &str) -> Self {
-        let start = Piece {
-            kind: PieceKind::Space,
-            start: 0,
-            end: text.len() as u32,
-            indent: 0,
-            begins_line: true,
-        };
-        Group {
-            close: Close::Bracket,
-            ..Group::new(start, None)
-        }
+        let start = Piece { kind: PieceKind::Space, start: 0, end: text.len() as u32, indent: 0, begins_line: true };
+        Group { close: Close::Bracket, ..Group::new(start, None) }
     }
 
     /// What this is to the forms in it, if it is a form.
@@ -101,11 +92,7 @@ pub fn read(text: &str, file: FileId, findings: &mut Findings) -> Group {
         return by_brackets.root;
     }
     let by_layout = Builder::build(text, &pieces, Trust::Layout);
-    let best = if by_layout.complaints <= by_brackets.complaints {
-        by_layout
-    } else {
-        by_brackets
-    };
+    let best = if by_layout.complaints <= by_brackets.complaints { by_layout } else { by_brackets };
 
     report(best.repairs, text, file, findings);
     best.root
@@ -133,32 +120,19 @@ pub(super) struct Builder<'a> {
 impl<'a> Builder<'a> {
     fn build(text: &'a str, pieces: &[Piece], trust: Trust) -> Self {
         let root = Group::whole_text(text);
-        let mut builder = Builder {
-            text,
-            root,
-            stack: Vec::new(),
-            beyond: 0,
-            repairs: Vec::new(),
-            complaints: 0,
-        };
+        let mut builder = Builder { text, root, stack: Vec::new(), beyond: 0, repairs: Vec::new(), complaints: 0 };
         for (i, &piece) in pieces.iter().enumerate() {
             match piece.kind {
-                PieceKind::Open if builder.stack.len() >= MAX_DEPTH || builder.beyond > 0 => {
-                    builder.open_beyond(piece)
-                }
+                PieceKind::Open if builder.stack.len() >= MAX_DEPTH || builder.beyond > 0 => builder.open_beyond(piece),
                 PieceKind::Close if builder.beyond > 0 => builder.beyond -= 1,
-                PieceKind::Open => {
-                    builder.open(piece, keyword_after(text, &pieces[i + 1..]), trust)
-                }
+                PieceKind::Open => builder.open(piece, keyword_after(text, &pieces[i + 1..]), trust),
                 PieceKind::Close => builder.close(piece, trust),
                 PieceKind::Junk if builder.beyond == 0 => builder.junk(),
                 _ if piece.is_trivia() || builder.beyond > 0 => {}
                 _ => builder.leaf(piece),
             }
         }
-        let whole = pieces
-            .last()
-            .is_none_or(|piece| piece.kind != PieceKind::Unread);
+        let whole = pieces.last().is_none_or(|piece| piece.kind != PieceKind::Unread);
         builder.finish(whole && builder.beyond == 0);
         builder
     }
@@ -167,11 +141,7 @@ impl<'a> Builder<'a> {
         self.beyond += 1;
         if self.beyond == 1 {
             self.stack.iter_mut().for_each(|group| group.hurt = true);
-            if !self
-                .repairs
-                .iter()
-                .any(|repair| matches!(repair, Repair::TooDeep { .. }))
-            {
+            if !self.repairs.iter().any(|repair| matches!(repair, Repair::TooDeep { .. })) {
                 self.complaints += 1;
                 self.repairs.push(Repair::TooDeep { at: piece.start });
             }
@@ -196,11 +166,7 @@ impl<'a> Builder<'a> {
             self.line_up(piece);
         }
         match self.stack.pop() {
-            Some(group) => self.add(Group {
-                end: piece.end,
-                close: Close::Bracket,
-                ..group
-            }),
+            Some(group) => self.add(Group { end: piece.end, close: Close::Bracket, ..group }),
             None => {
                 self.complaints += 1;
                 self.repairs.push(Repair::Remove { at: piece.start });
@@ -210,10 +176,7 @@ impl<'a> Builder<'a> {
 
     fn leaf(&mut self, piece: Piece) {
         let top = self.top();
-        top.hurt |= matches!(
-            piece.kind,
-            PieceKind::UnclosedBlock | PieceKind::UnclosedText
-        );
+        top.hurt |= matches!(piece.kind, PieceKind::UnclosedBlock | PieceKind::UnclosedText);
         top.end = top.end.max(piece.end);
         top.nodes.push(Node::Leaf(piece));
     }
@@ -255,8 +218,7 @@ impl<'a> Builder<'a> {
             let Some(group) = self.stack.pop() else { break };
             add_at = add_at.max(group.end);
             // An unclosed block or string took the bracket with it.
-            let swallowed =
-                |node: &Node| node.is(PieceKind::UnclosedBlock) || node.is(PieceKind::UnclosedText);
+            let swallowed = |node: &Node| node.is(PieceKind::UnclosedBlock) || node.is(PieceKind::UnclosedText);
             if !group.nodes.iter().any(swallowed) {
                 opened.push(group.start..self.head_end(&group));
             }
@@ -270,12 +232,7 @@ impl<'a> Builder<'a> {
 
     /// Behind the words a group begins with: as much as is needed to name it.
     fn head_end(&self, group: &Group) -> u32 {
-        let words = group
-            .nodes
-            .iter()
-            .take(2)
-            .take_while(|node| node.is(PieceKind::Word))
-            .map(Node::range);
+        let words = group.nodes.iter().take(2).take_while(|node| node.is(PieceKind::Word)).map(Node::range);
         words
             .last()
             .filter(|range| !self.text[group.start as usize..range.end].contains(['\n', '\r']))

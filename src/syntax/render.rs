@@ -27,9 +27,7 @@ pub fn render(diagnostics: &[Diagnostic], sources: &[Source], style: Style) -> S
     .term_width(WIDTH);
     let mut sorted: Vec<&Diagnostic> = diagnostics.iter().collect();
     sorted.sort_by_key(|diagnostic| diagnostic.span);
-    let reports = sorted
-        .iter()
-        .map(|diagnostic| renderer.render(&[report(diagnostic, sources)]) + "\n");
+    let reports = sorted.iter().map(|diagnostic| renderer.render(&[report(diagnostic, sources)]) + "\n");
     reports.collect::<Vec<_>>().join("\n")
 }
 
@@ -39,10 +37,7 @@ pub fn one_line(diagnostic: &Diagnostic, sources: &[Source]) -> String {
     match sources.get(diagnostic.span.file.0 as usize) {
         Some(source) => {
             let at = source.position(diagnostic.span.start as usize);
-            format!(
-                "{}:{}:{}: {severity}: {}",
-                source.name, at.line, at.column, diagnostic.message
-            )
+            format!("{}:{}:{}: {severity}: {}", source.name, at.line, at.column, diagnostic.message)
         }
         None => format!("{severity}: {}", diagnostic.message),
     }
@@ -62,9 +57,7 @@ fn report<'a>(diagnostic: &'a Diagnostic, sources: &'a [Source]) -> Group<'a> {
         Severity::Warning => Level::WARNING,
         Severity::Hint => Level::INFO.with_name("hint"),
     };
-    let title = level
-        .primary_title(diagnostic.message.as_str())
-        .id(diagnostic.code.name());
+    let title = level.primary_title(diagnostic.message.as_str()).id(diagnostic.code.name());
     let mut elements: Vec<Element> = Vec::new();
     for marks in excerpts(diagnostic, sources) {
         if let Some(source) = sources.get(marks[0].span.file.0 as usize) {
@@ -86,20 +79,12 @@ pub(super) struct Mark<'a> {
 
 /// The places a diagnostic points at, its own first, by what is shown together: all of one file, unless a line is too long for that.
 fn excerpts<'a>(diagnostic: &'a Diagnostic, sources: &[Source]) -> Vec<Vec<Mark<'a>>> {
-    let own = Mark {
-        span: diagnostic.span,
-        label: None,
-    };
-    let also = diagnostic.also.iter().map(|(span, what)| Mark {
-        span: *span,
-        label: Some(what),
-    });
+    let own = Mark { span: diagnostic.span, label: None };
+    let also = diagnostic.also.iter().map(|(span, what)| Mark { span: *span, label: Some(what) });
     let mut excerpts: Vec<Vec<Mark>> = Vec::new();
     for mark in std::iter::once(own).chain(also) {
         let together = |marks: &&mut Vec<Mark>| {
-            marks[0].span.file == mark.span.file
-                && !is_long(marks[0].span, sources)
-                && !is_long(mark.span, sources)
+            marks[0].span.file == mark.span.file && !is_long(marks[0].span, sources) && !is_long(mark.span, sources)
         };
         match excerpts.iter_mut().find(together) {
             Some(marks) => marks.push(mark),
@@ -112,8 +97,7 @@ fn excerpts<'a>(diagnostic: &'a Diagnostic, sources: &[Source]) -> Vec<Vec<Mark<
 /// Whether a place lies in a line that can only be shown in part.
 fn is_long(span: Span, sources: &[Source]) -> bool {
     let source = sources.get(span.file.0 as usize);
-    source
-        .is_some_and(|source| source.line_range(source.line(span.start as usize)).len() > LONG_LINE)
+    source.is_some_and(|source| source.line_range(source.line(span.start as usize)).len() > LONG_LINE)
 }
 
 /// The lines of one file that hold these marks.
@@ -127,9 +111,5 @@ fn excerpt<'a>(marks: &[Mark<'a>], source: &'a Source) -> Snippet<'a, Annotation
         }
     });
     let annotations: Vec<Annotation> = annotations.collect();
-    Snippet::source(window.text)
-        .path(&*source.name)
-        .line_start(window.first)
-        .fold(true)
-        .annotations(annotations)
+    Snippet::source(window.text).path(&*source.name).line_start(window.first).fold(true).annotations(annotations)
 }

@@ -13,10 +13,7 @@ use super::source::{FileId, Span};
 #[derive(Clone, Debug)]
 pub enum Repair {
     /// Brackets added where groups, innermost first, are left open; each with the range of its first words.
-    Close {
-        opened: Vec<Range<u32>>,
-        add_at: u32,
-    },
+    Close { opened: Vec<Range<u32>>, add_at: u32 },
     /// A closing bracket passed over.
     Remove { at: u32 },
     /// Everything from this bracket to its end passed over.
@@ -26,10 +23,7 @@ pub enum Repair {
 impl Builder<'_> {
     /// Before a form that begins here: closes the groups it can't be in, or opens again the one that it belongs to.
     pub(super) fn make_room(&mut self, piece: Piece, keyword: Option<Keyword>) {
-        let unclosed = (0..self.stack.len())
-            .rev()
-            .take_while(|&depth| self.is_over(depth, piece, keyword))
-            .count();
+        let unclosed = (0..self.stack.len()).rev().take_while(|&depth| self.is_over(depth, piece, keyword)).count();
         self.close_unclosed(unclosed);
         if let Some(keyword) = keyword
             && piece.begins_line
@@ -49,11 +43,7 @@ impl Builder<'_> {
         match piece.indent.cmp(&group.indent) {
             std::cmp::Ordering::Less => true,
             std::cmp::Ordering::Equal => {
-                misplaced
-                    || (group.begins_line
-                        && group
-                            .child_column
-                            .is_some_and(|column| column > piece.indent))
+                misplaced || (group.begins_line && group.child_column.is_some_and(|column| column > piece.indent))
             }
             std::cmp::Ordering::Greater => misplaced && !container,
         }
@@ -63,9 +53,7 @@ impl Builder<'_> {
     fn belongs_outside(&self, depth: usize, keyword: Keyword) -> bool {
         let fits = |group: &Group| group.place().is_some_and(|place| keyword.may_stand(place));
         let here = &self.stack[depth];
-        here.place().is_some()
-            && !fits(here)
-            && (keyword.may_stand(Place::Top) || self.stack[..depth].iter().any(fits))
+        here.place().is_some() && !fits(here) && (keyword.may_stand(Place::Top) || self.stack[..depth].iter().any(fits))
     }
 
     /// A form indented like those in the group just closed, and at home there: that group was closed too early.
@@ -77,25 +65,13 @@ impl Builder<'_> {
         };
         let holds = last.place().is_some_and(|place| keyword.may_stand(place));
         let lined_up = last.child_column == Some(column) || !accepted_here;
-        if last.close == Close::Bracket
-            && last.begins_line
-            && last.indent < column
-            && holds
-            && lined_up
-        {
+        if last.close == Close::Bracket && last.begins_line && last.indent < column && holds && lined_up {
             let at = last.end - 1;
             let Some(Node::Group(group)) = top.nodes.pop() else {
                 return;
             };
-            let end = group
-                .nodes
-                .last()
-                .map_or(group.start + 1, |node| node.range().end as u32);
-            self.stack.push(Group {
-                end,
-                close: Close::Missing,
-                ..group
-            });
+            let end = group.nodes.last().map_or(group.start + 1, |node| node.range().end as u32);
+            self.stack.push(Group { end, close: Close::Missing, ..group });
             self.complaints += 1;
             self.repairs.push(Repair::Remove { at });
         }
@@ -103,16 +79,8 @@ impl Builder<'_> {
 
     /// A bracket that begins its line closes the group that begins in the same column.
     pub(super) fn line_up(&mut self, piece: Piece) {
-        let deeper = self
-            .stack
-            .iter()
-            .rev()
-            .take_while(|group| group.indent > piece.indent)
-            .count();
-        let lines_up = self
-            .stack
-            .iter()
-            .any(|group| group.begins_line && group.indent == piece.indent);
+        let deeper = self.stack.iter().rev().take_while(|group| group.indent > piece.indent).count();
+        let lines_up = self.stack.iter().any(|group| group.begins_line && group.indent == piece.indent);
         if piece.begins_line && lines_up {
             self.close_unclosed(deeper);
         }
@@ -149,51 +117,30 @@ fn runs(mut brackets: Vec<u32>, text: &str) -> Vec<Range<u32>> {
 }
 
 fn span(file: FileId, range: &Range<u32>) -> Span {
-    Span {
-        file,
-        start: range.start,
-        end: range.end,
-    }
+    Span { file, start: range.start, end: range.end }
 }
 
 fn unclosed(opened: &[Range<u32>], add_at: u32, text: &str, file: FileId) -> Diagnostic {
-    let name =
-        |range: &Range<u32>| format!("`{}`", &text[range.start as usize..range.end as usize]);
+    let name = |range: &Range<u32>| format!("`{}`", &text[range.start as usize..range.end as usize]);
     let (innermost, outer) = opened.split_first().expect("a repair closes something");
     let message = match outer {
         [] => format!("{} is not closed", name(innermost)),
-        [one] => format!(
-            "{} is not closed, nor is {} around it",
-            name(innermost),
-            name(one)
-        ),
-        _ => format!(
-            "{} is not closed, nor are {} brackets around it",
-            name(innermost),
-            outer.len()
-        ),
+        [one] => format!("{} is not closed, nor is {} around it", name(innermost), name(one)),
+        _ => format!("{} is not closed, nor are {} brackets around it", name(innermost), outer.len()),
     };
     let brackets = ")".repeat(opened.len().min(5));
-    let add = if opened.len() > 5 {
-        format!("add {} brackets here", opened.len())
-    } else {
-        format!("add `{brackets}` here")
-    };
+    let add =
+        if opened.len() > 5 { format!("add {} brackets here", opened.len()) } else { format!("add `{brackets}` here") };
     let error = Diagnostic::error(Code::UnclosedBracket, span(file, innermost), message)
         .also(Span::new(file, add_at as usize, add_at as usize), add)
         .help("the place is a guess from the indentation: close it where it should end");
-    outer.iter().take(3).fold(error, |error, range| {
-        error.also(span(file, range), "still open as well")
-    })
+    outer.iter().take(3).fold(error, |error, range| error.also(span(file, range), "still open as well"))
 }
 
 fn stray(span: Span, brackets: &str) -> Diagnostic {
     let count = brackets.matches(')').count();
-    let message = if count == 1 {
-        "this `)` closes nothing".to_string()
-    } else {
-        format!("these {count} `)` close nothing")
-    };
+    let message =
+        if count == 1 { "this `)` closes nothing".to_string() } else { format!("these {count} `)` close nothing") };
     Diagnostic::error(Code::StrayBracket, span, message).help(if count == 1 {
         "remove it, or add the `(` that it should close"
     } else {

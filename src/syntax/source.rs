@@ -5,15 +5,11 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 
 /// Which of a program's texts a span lies in: 0 is the program itself, the others are what it imports.
-#[derive(
-    Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, Default,
-)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, Default)]
 pub struct FileId(pub u16);
 
 /// A range of bytes of one text, end excluded.
-#[derive(
-    Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, Default,
-)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize, Deserialize, Default)]
 pub struct Span {
     pub file: FileId,
     pub start: u32,
@@ -22,19 +18,12 @@ pub struct Span {
 
 impl Span {
     pub fn new(file: FileId, start: usize, end: usize) -> Self {
-        Span {
-            file,
-            start: start as u32,
-            end: end as u32,
-        }
+        Span { file, start: start as u32, end: end as u32 }
     }
 
     /// From the start of `self` to the end of `other`.
     pub fn to(self, other: Span) -> Span {
-        Span {
-            end: other.end.max(self.end),
-            ..self
-        }
+        Span { end: other.end.max(self.end), ..self }
     }
 
     pub fn range(self) -> std::ops::Range<usize> {
@@ -65,11 +54,7 @@ impl Source {
     pub fn new(name: impl Into<Arc<str>>, text: impl Into<Arc<str>>) -> Self {
         let text: Arc<str> = text.into();
         let line_starts = line_starts(text.as_bytes()).into();
-        Source {
-            name: name.into(),
-            text,
-            line_starts,
-        }
+        Source { name: name.into(), text, line_starts }
     }
 
     pub fn slice(&self, span: Span) -> &str {
@@ -78,26 +63,15 @@ impl Source {
 
     /// One-based number of the line that holds this byte.
     pub fn line(&self, offset: usize) -> usize {
-        self.line_starts
-            .partition_point(|&start| start as usize <= offset)
+        self.line_starts.partition_point(|&start| start as usize <= offset)
     }
 
     pub fn position(&self, offset: usize) -> Position {
         let line = self.line(offset);
-        let mark = if line == 1 && self.text.starts_with('\u{feff}') {
-            '\u{feff}'.len_utf8()
-        } else {
-            0
-        };
+        let mark = if line == 1 && self.text.starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 };
         let start = self.line_starts[line - 1] as usize + mark;
-        let before = self
-            .text
-            .get(start..offset.min(self.text.len()))
-            .unwrap_or("");
-        Position {
-            line,
-            column: before.chars().count() + 1,
-        }
+        let before = self.text.get(start..offset.min(self.text.len())).unwrap_or("");
+        Position { line, column: before.chars().count() + 1 }
     }
 
     pub fn line_count(&self) -> usize {
@@ -110,10 +84,7 @@ impl Source {
             return self.text.len()..self.text.len();
         };
         let start = start as usize;
-        let end = self
-            .line_starts
-            .get(line)
-            .map_or(self.text.len(), |&next| next as usize);
+        let end = self.line_starts.get(line).map_or(self.text.len(), |&next| next as usize);
         let ended = self.text[start..end].trim_end_matches(['\r', '\n']).len();
         start..start + ended
     }

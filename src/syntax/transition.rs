@@ -32,28 +32,15 @@ pub fn transition(form: &mut Form) -> Option<Transition> {
     let target = form.name("a target state")?;
     let name = name(form);
     form.finish();
-    Some(Transition {
-        span: form.span(),
-        kind,
-        sources,
-        target,
-        name,
-    })
+    Some(Transition { span: form.span(), kind, sources, target, name })
 }
 
 fn name(form: &mut Form) -> Option<Name> {
     if let Some(arrow) = form.next_if(PieceKind::Arrow) {
-        let diagnostic = form.error(
-            arrow.span(form.text.file),
-            "a transition has one target only",
-        );
+        let diagnostic = form.error(arrow.span(form.text.file), "a transition has one target only");
         return form.fail(diagnostic.help("write a transition of its own for the next step"));
     }
-    if form.rest.is_empty() {
-        None
-    } else {
-        form.name("the transition's name")
-    }
+    if form.rest.is_empty() { None } else { form.name("the transition's name") }
 }
 
 /// Takes everything up to the arrow, and the arrow.
@@ -72,16 +59,11 @@ fn before_arrow<'a>(form: &mut Form<'a>) -> Option<&'a [Node]> {
 }
 
 fn no_arrow(form: &Form) -> Diagnostic {
-    let nearly = form
-        .rest
-        .iter()
-        .find(|node| node.is(PieceKind::Other) && !matches!(form.text.of(node), "," | "{" | "}"));
+    let nearly =
+        form.rest.iter().find(|node| node.is(PieceKind::Other) && !matches!(form.text.of(node), "," | "{" | "}"));
     match (nearly, form.rest) {
         (Some(node), _) => form
-            .error(
-                node.span(form.text.file),
-                format!("{} is no arrow", form.text.describe(node)),
-            )
+            .error(node.span(form.text.file), format!("{} is no arrow", form.text.describe(node)))
             .help("write it `->`"),
         (None, []) => form.missing("everything after its keyword"),
         (None, _) => form.missing("the arrow `->` and a target state"),
@@ -89,11 +71,7 @@ fn no_arrow(form: &Form) -> Diagnostic {
 }
 
 /// The first node, and those that give the source.
-fn split<'a>(
-    form: &mut Form<'a>,
-    before: &'a [Node],
-    what: &str,
-) -> Option<(&'a Node, &'a [Node])> {
+fn split<'a>(form: &mut Form<'a>, before: &'a [Node], what: &str) -> Option<(&'a Node, &'a [Node])> {
     let keyword = form.keyword.name();
     let message = match before {
         [first, rest @ ..] if !rest.is_empty() => return Some((first, rest)),
@@ -103,10 +81,7 @@ fn split<'a>(
         [node] if node.is(PieceKind::Word) => {
             format!("`{keyword}` lacks {what} or a source state before `->`")
         }
-        [_] => format!(
-            "`{keyword}` lacks {what} before `{}`",
-            form.text.of(&before[0])
-        ),
+        [_] => format!("`{keyword}` lacks {what} before `{}`", form.text.of(&before[0])),
         _ => format!("`{keyword}` lacks {what} and a source state before `->`"),
     };
     let diagnostic = at_arrow(form, before, message);
@@ -149,9 +124,7 @@ fn timeout(form: &mut Form, node: &Node) -> Option<Timeout> {
     let span = node.span(form.text.file);
     match milliseconds(word) {
         Ok(ms) => Some(Timeout::Number { ms, span }),
-        Err((message, help)) => {
-            form.fail(Diagnostic::error(Code::BadTimeout, span, message).help(help))
-        }
+        Err((message, help)) => form.fail(Diagnostic::error(Code::BadTimeout, span, message).help(help)),
     }
 }
 
@@ -161,24 +134,16 @@ fn milliseconds(word: &str) -> Result<f64, (String, String)> {
     let digits = word.bytes().take_while(u8::is_ascii_digit).count();
     let is_decimal = |word: &str| {
         let (whole, fraction) = word.split_once('.').unwrap_or((word, "0"));
-        [whole, fraction]
-            .iter()
-            .all(|part| !part.is_empty() && part.bytes().all(|b| b.is_ascii_digit()))
+        [whole, fraction].iter().all(|part| !part.is_empty() && part.bytes().all(|b| b.is_ascii_digit()))
     };
     if let Some(positive) = word.strip_prefix('-').filter(|rest| is_decimal(rest)) {
-        return Err((
-            format!("a timeout can't be negative: `{shown}`"),
-            format!("write `{}`", shortened(positive)),
-        ));
+        return Err((format!("a timeout can't be negative: `{shown}`"), format!("write `{}`", shortened(positive))));
     }
     if !is_decimal(word) {
         let unit = word[digits..].to_ascii_lowercase();
         let help = match (unit.as_str(), word[..digits].parse::<u32>()) {
             ("ms", Ok(ms)) => format!("timeouts are in milliseconds already: write `{ms}`"),
-            ("s" | "sec", Ok(s)) => format!(
-                "timeouts are in milliseconds: write `{}`",
-                u64::from(s) * 1000
-            ),
+            ("s" | "sec", Ok(s)) => format!("timeouts are in milliseconds: write `{}`", u64::from(s) * 1000),
             _ => "write milliseconds in digits, such as `500` or `0.5`".to_string(),
         };
         return Err((format!("`{shown}` is not a number of milliseconds"), help));
@@ -204,11 +169,8 @@ fn source(form: &mut Form, nodes: &[Node]) -> Option<Sources> {
         [] => {
             let taken = form.group.nodes.len() - 2 - form.rest.len();
             let before = &form.group.nodes[1..1 + taken];
-            let diagnostic = at_arrow(
-                form,
-                before,
-                format!("`{}` lacks a source state before `->`", form.keyword.name()),
-            );
+            let diagnostic =
+                at_arrow(form, before, format!("`{}` lacks a source state before `->`", form.keyword.name()));
             form.fail(diagnostic)
         }
         many => {
@@ -222,9 +184,8 @@ fn source(form: &mut Form, nodes: &[Node]) -> Option<Sources> {
 fn list(form: &mut Form, group: &Group) -> Option<Sources> {
     if group.nodes.is_empty() {
         let span = form.text.span(group.start as usize, group.end as usize);
-        let diagnostic = form
-            .error(span, "the list of source states is empty")
-            .help("name the states, or write `*` for any");
+        let diagnostic =
+            form.error(span, "the list of source states is empty").help("name the states, or write `*` for any");
         return form.fail(diagnostic);
     }
     let mut states = Vec::with_capacity(group.nodes.len());
@@ -248,25 +209,15 @@ fn too_many(form: &Form, nodes: &[Node]) -> Diagnostic {
     }
     let span = form.text.point(first).to(form.text.point(last));
     let names: Vec<&str> = nodes.iter().map(|node| form.text.of(node)).collect();
-    let list = format!(
-        "several source states are put in brackets: `({})`",
-        shortened(&names.join(" "))
-    );
-    let error = form.error(
-        span,
-        format!(
-            "{} names stand where one source state is expected",
-            nodes.len()
-        ),
-    );
+    let list = format!("several source states are put in brackets: `({})`", shortened(&names.join(" ")));
+    let error = form.error(span, format!("{} names stand where one source state is expected", nodes.len()));
     match (form.keyword, names.as_slice()) {
-        (Keyword::Eps, [event, state]) => error.help(format!(
-            "for an event write `(on {event} {state} -> ..)`; {list}"
-        )),
-        (Keyword::Ontime, [unit @ ("ms" | "milliseconds" | "s" | "sec" | "seconds"), _]) => error
-            .help(format!(
-                "timeouts are in milliseconds, without a unit: leave `{unit}` out"
-            )),
+        (Keyword::Eps, [event, state]) => {
+            error.help(format!("for an event write `(on {event} {state} -> ..)`; {list}"))
+        }
+        (Keyword::Ontime, [unit @ ("ms" | "milliseconds" | "s" | "sec" | "seconds"), _]) => {
+            error.help(format!("timeouts are in milliseconds, without a unit: leave `{unit}` out"))
+        }
 
         _ => error.help(list),
     }

@@ -26,22 +26,13 @@ struct Line {
 impl Window {
     /// From the first to the last line in which a mark begins.
     pub fn new(source: &Source, marks: &[Mark]) -> Self {
-        let numbers = marks
-            .iter()
-            .map(|mark| source.line(mark.span.start as usize));
+        let numbers = marks.iter().map(|mark| source.line(mark.span.start as usize));
         let first = numbers.clone().min().unwrap_or(1);
         let last = numbers.max().unwrap_or(1);
-        let mut window = Window {
-            text: String::new(),
-            first,
-            lines: Vec::with_capacity(last - first + 1),
-        };
+        let mut window = Window { text: String::new(), first, lines: Vec::with_capacity(last - first + 1) };
         for number in first..=last {
             let line = without_mark(source, source.line_range(number));
-            let marked = marks
-                .iter()
-                .map(|mark| mark.span.start as usize)
-                .find(|at| source.line(*at) == number);
+            let marked = marks.iter().map(|mark| mark.span.start as usize).find(|at| source.line(*at) == number);
             window.push(source, line.clone(), part(&source.text, line, marked));
         }
         window
@@ -62,24 +53,16 @@ impl Window {
 
     /// A span's place in the window, cut off where what is shown of its first line ends.
     pub fn place(&self, source: &Source, span: Span) -> Range<usize> {
-        let index = source
-            .line(span.start as usize)
-            .saturating_sub(self.first)
-            .min(self.lines.len() - 1);
+        let index = source.line(span.start as usize).saturating_sub(self.first).min(self.lines.len() - 1);
         let Line { shown, at } = &self.lines[index];
-        let place =
-            |offset: u32| (offset as usize).clamp(shown.start, shown.end) - shown.start + at;
+        let place = |offset: u32| (offset as usize).clamp(shown.start, shown.end) - shown.start + at;
         place(span.start)..place(span.end)
     }
 }
 
 /// A line without the byte order mark that the text may begin with.
 fn without_mark(source: &Source, line: Range<usize>) -> Range<usize> {
-    let mark = if line.start == 0 && source.text.starts_with('\u{feff}') {
-        '\u{feff}'.len_utf8()
-    } else {
-        0
-    };
+    let mark = if line.start == 0 && source.text.starts_with('\u{feff}') { '\u{feff}'.len_utf8() } else { 0 };
     line.start + mark..line.end
 }
 
@@ -90,15 +73,8 @@ fn part(text: &str, line: Range<usize>, marked: Option<usize>) -> Range<usize> {
     }
     let marked = marked.unwrap_or(line.start).clamp(line.start, line.end);
     let before = text.get(line.start..marked).unwrap_or("");
-    let start = before
-        .char_indices()
-        .rev()
-        .nth(BEFORE)
-        .map_or(line.start, |(i, _)| line.start + i);
+    let start = before.char_indices().rev().nth(BEFORE).map_or(line.start, |(i, _)| line.start + i);
     let rest = &text[start..line.end];
-    let end = rest
-        .char_indices()
-        .nth(PART)
-        .map_or(line.end, |(i, _)| start + i);
+    let end = rest.char_indices().nth(PART).map_or(line.end, |(i, _)| start + i);
     start..end
 }

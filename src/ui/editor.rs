@@ -41,17 +41,11 @@ pub enum Multiplexer {
 impl Surroundings {
     /// Of this process, on a terminal of this size.
     pub fn here(size: Size) -> Surroundings {
-        let mut named = ["VISUAL", "EDITOR"]
-            .iter()
-            .filter_map(|name| env::var(name).ok());
+        let mut named = ["VISUAL", "EDITOR"].iter().filter_map(|name| env::var(name).ok());
         Surroundings {
             editor: named.find(|editor| !editor.trim().is_empty()),
             search: env::var_os("PATH").unwrap_or_default(),
-            multiplexer: if env::var_os("TMUX").is_some() {
-                Multiplexer::Tmux
-            } else {
-                Multiplexer::None
-            },
+            multiplexer: if env::var_os("TMUX").is_some() { Multiplexer::Tmux } else { Multiplexer::None },
             size,
         }
     }
@@ -78,14 +72,8 @@ pub enum NoEditor {
 impl fmt::Display for NoEditor {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
-            Self::Missing { name } => write!(
-                f,
-                "the editor `{name}` isn't there; set VISUAL or EDITOR to one that is"
-            ),
-            Self::NoneFound => write!(
-                f,
-                "no editor found; set VISUAL or EDITOR to the one you use"
-            ),
+            Self::Missing { name } => write!(f, "the editor `{name}` isn't there; set VISUAL or EDITOR to one that is"),
+            Self::NoneFound => write!(f, "no editor found; set VISUAL or EDITOR to the one you use"),
         }
     }
 }
@@ -102,46 +90,24 @@ pub struct Launch {
 
 impl Launch {
     /// Line and column count from one.
-    pub fn new(
-        file: &Path,
-        line: usize,
-        column: usize,
-        around: &Surroundings,
-    ) -> Result<Launch, NoEditor> {
+    pub fn new(file: &Path, line: usize, column: usize, around: &Surroundings) -> Result<Launch, NoEditor> {
         let editor = match &around.editor {
             Some(editor) => editor.as_str(),
-            None => *USUAL
-                .iter()
-                .find(|name| find(name, &around.search).is_some())
-                .ok_or(NoEditor::NoneFound)?,
+            None => *USUAL.iter().find(|name| find(name, &around.search).is_some()).ok_or(NoEditor::NoneFound)?,
         };
         let mut command = command_line(editor, file, line, column);
         let name = command[0].to_string_lossy().into_owned();
-        command[0] = find(&name, &around.search)
-            .ok_or(NoEditor::Missing { name: name.clone() })?
-            .into();
+        command[0] = find(&name, &around.search).ok_or(NoEditor::Missing { name: name.clone() })?.into();
         Ok(match (Dialect::of(&name), around.multiplexer) {
-            (Dialect::Goto | Dialect::Suffix(Home::Window), _) => Launch {
-                manner: Manner::Window,
-                command,
-            },
-            (_, Multiplexer::Tmux) => Launch {
-                manner: Manner::Split,
-                command: split(command, around.size),
-            },
-            (_, Multiplexer::None) => Launch {
-                manner: Manner::Covering,
-                command,
-            },
+            (Dialect::Goto | Dialect::Suffix(Home::Window), _) => Launch { manner: Manner::Window, command },
+            (_, Multiplexer::Tmux) => Launch { manner: Manner::Split, command: split(command, around.size) },
+            (_, Multiplexer::None) => Launch { manner: Manner::Covering, command },
         })
     }
 
     /// Runs it; a thread calls back when it has ended, or when tmux has made the pane, with what went wrong in one line.
     pub fn start(self, done: impl FnOnce(Result<(), String>) + Send + 'static) -> io::Result<()> {
-        thread::Builder::new()
-            .name("editor".into())
-            .spawn(move || done(self.run()))
-            .map(drop)
+        thread::Builder::new().name("editor".into()).spawn(move || done(self.run())).map(drop)
     }
 
     fn run(&self) -> Result<(), String> {
@@ -151,18 +117,15 @@ impl Launch {
         command.args(&self.command[1..]);
         let ended = match self.manner {
             Manner::Covering => foreground::run(&mut command).map(|status| (status, Vec::new())),
-            Manner::Split | Manner::Window => command
-                .stdin(Stdio::null())
-                .output()
-                .map(|output| (output.status, output.stderr)),
+            Manner::Split | Manner::Window => {
+                command.stdin(Stdio::null()).output().map(|output| (output.status, output.stderr))
+            }
         };
         match ended {
             Ok((status, _)) if status.success() => Ok(()),
             Ok((status, said)) => {
                 let said = String::from_utf8_lossy(&said);
-                Err(format!("`{name}` ended with {status}: {}", said.trim())
-                    .trim_end_matches([':', ' '])
-                    .to_owned())
+                Err(format!("`{name}` ended with {status}: {}", said.trim()).trim_end_matches([':', ' ']).to_owned())
             }
             Err(error) => Err(format!("`{name}` can't be started: {error}")),
         }
@@ -226,12 +189,7 @@ pub fn command_line(editor: &str, file: &Path, line: usize, column: usize) -> Ve
     with_place.push(format!(":{line}:{column}"));
     command.extend(match Dialect::of(&command[0].to_string_lossy()) {
         Dialect::Vim => {
-            vec![
-                "--cmd".into(),
-                NO_ARCHIVE.into(),
-                format!("+call cursor({line},{column})").into(),
-                file,
-            ]
+            vec!["--cmd".into(), NO_ARCHIVE.into(), format!("+call cursor({line},{column})").into(), file]
         }
         Dialect::Line => vec![format!("+{line}").into(), file],
         Dialect::Comma => vec![format!("+{line},{column}").into(), file],
@@ -276,9 +234,7 @@ fn words(command: &str) -> Vec<String> {
 /// The tmux command that runs this in a new pane. Given several words, tmux runs them without a shell.
 fn split(command: Vec<OsString>, size: Size) -> Vec<OsString> {
     let direction = if size.width >= WIDE { "-h" } else { "-v" };
-    let mut tmux: Vec<OsString> = ["tmux", "split-window", direction]
-        .map(OsString::from)
-        .into();
+    let mut tmux: Vec<OsString> = ["tmux", "split-window", direction].map(OsString::from).into();
     if let Ok(folder) = env::current_dir() {
         tmux.extend(["-c".into(), literal(folder.as_os_str())]);
     }
@@ -290,15 +246,9 @@ fn split(command: Vec<OsString>, size: Size) -> Vec<OsString> {
 /// For arguments in which tmux expands formats, some of which run commands.
 fn literal(text: &OsStr) -> OsString {
     let doubled = |&byte: &u8| {
-        if byte == b'#' {
-            vec![b'#', b'#']
-        } else {
-            vec![byte]
-        }
+        if byte == b'#' { vec![b'#', b'#'] } else { vec![byte] }
     };
-    as_tmux_word(OsString::from_vec(
-        text.as_bytes().iter().flat_map(doubled).collect(),
-    ))
+    as_tmux_word(OsString::from_vec(text.as_bytes().iter().flat_map(doubled).collect()))
 }
 
 /// A last semicolon would begin another tmux command.
@@ -311,14 +261,10 @@ fn as_tmux_word(word: OsString) -> OsString {
 
 /// The program's path, from the search path unless its name is a path already.
 fn find(program: &str, search: &OsStr) -> Option<PathBuf> {
-    let runs = |path: &PathBuf| {
-        path.metadata()
-            .is_ok_and(|seen| seen.is_file() && seen.permissions().mode() & 0o111 != 0)
-    };
+    let runs =
+        |path: &PathBuf| path.metadata().is_ok_and(|seen| seen.is_file() && seen.permissions().mode() & 0o111 != 0);
     if program.contains('/') {
         return Some(PathBuf::from(program)).filter(runs);
     }
-    env::split_paths(search)
-        .map(|folder| folder.join(program))
-        .find(runs)
+    env::split_paths(search).map(|folder| folder.join(program)).find(runs)
 }

@@ -70,20 +70,9 @@ impl Input {
         // This makes crossterm listen for size changes, before us: when we wake up, it knows.
         event::poll(AT_ONCE)?;
         let resized = pipe::register(SIGWINCH, waker.try_clone()?)?;
-        let state = State {
-            holds: 0,
-            reader: Reader::AtWork,
-            wanted: Wanted::Reading,
-        };
-        let shared = Arc::new(Shared {
-            state: Mutex::new(state),
-            changed: Condvar::new(),
-            waker,
-        });
-        let input = Input {
-            shared: shared.clone(),
-            resized,
-        };
+        let state = State { holds: 0, reader: Reader::AtWork, wanted: Wanted::Reading };
+        let shared = Arc::new(Shared { state: Mutex::new(state), changed: Condvar::new(), waker });
+        let input = Input { shared: shared.clone(), resized };
         thread::Builder::new().name("input".into()).spawn(move || {
             if shared.run(&woken, &on).is_err() {
                 on(Received::Gone);
@@ -99,14 +88,8 @@ impl Input {
         state.holds += 1;
         self.shared.wake();
         let at_work = |state: &mut State| state.reader == Reader::AtWork;
-        drop(
-            self.shared
-                .changed
-                .wait_timeout_while(state, REST_TAKES, at_work),
-        );
-        Hold {
-            shared: self.shared.clone(),
-        }
+        drop(self.shared.changed.wait_timeout_while(state, REST_TAKES, at_work));
+        Hold { shared: self.shared.clone() }
     }
 }
 
@@ -158,10 +141,7 @@ impl Shared {
         while state.holds > 0 && state.wanted == Wanted::Reading {
             state.reader = Reader::Resting;
             self.changed.notify_all();
-            state = self
-                .changed
-                .wait(state)
-                .unwrap_or_else(PoisonError::into_inner);
+            state = self.changed.wait(state).unwrap_or_else(PoisonError::into_inner);
         }
         state.reader = Reader::AtWork;
         state.wanted == Wanted::Reading
@@ -170,11 +150,7 @@ impl Shared {
 
 /// Until there is something to read, or a call. An error means that the terminal is gone.
 fn wait(terminal: RawFd, mut woken: &UnixStream) -> io::Result<()> {
-    let interest = |fd| libc::pollfd {
-        fd,
-        events: libc::POLLIN,
-        revents: 0,
-    };
+    let interest = |fd| libc::pollfd { fd, events: libc::POLLIN, revents: 0 };
     let mut both = [interest(terminal), interest(woken.as_raw_fd())];
     // SAFETY: the array is as long as told.
     while unsafe { libc::poll(both.as_mut_ptr(), 2, -1) } < 0 {

@@ -47,13 +47,20 @@ pub fn run(setup: Setup, trace: Option<PathBuf>) -> ExitCode {
 fn live(setup: Setup, trace: Option<PathBuf>) -> Result<ExitCode, String> {
     Screen::check().map_err(|error| error.to_string())?;
     if trace.as_deref() == Some(Path::new("-")) {
-        return Err("the screen needs standard output for itself: name a file for --trace, or use `lrp run`".to_string());
+        return Err(
+            "the screen needs standard output for itself: name a file for --trace, or use `lrp run`".to_string()
+        );
     }
     let trace = trace.as_deref().map(|path| Trace::create(path, setup.conditions())).transpose();
     let trace = trace.map_err(|error| format!("the trace can't be written: {error}"))?;
     let app = |size| {
         let file = setup.file.display().to_string().into();
-        App::new(Options { file, rate: setup.pacing.rate.hz(), theme: Theme::from_no_color(std::env::var("NO_COLOR").ok().as_deref()), size })
+        App::new(Options {
+            file,
+            rate: setup.pacing.rate.hz(),
+            theme: Theme::from_no_color(std::env::var("NO_COLOR").ok().as_deref()),
+            size,
+        })
     };
     let (happened, inbox) = channel();
     let signals = send(&happened, Happened::Signal);
@@ -82,7 +89,10 @@ fn live(setup: Setup, trace: Option<PathBuf>) -> Result<ExitCode, String> {
 }
 
 /// Hands things of one kind on to the loop; when that has ended there is nobody to tell.
-fn send<T: 'static>(happened: &Sender<Happened>, kind: impl Fn(T) -> Happened + Clone + Send + 'static) -> impl Fn(T) + Clone + Send + 'static {
+fn send<T: 'static>(
+    happened: &Sender<Happened>,
+    kind: impl Fn(T) -> Happened + Clone + Send + 'static,
+) -> impl Fn(T) + Clone + Send + 'static {
     let happened = happened.clone();
     move |thing| drop(happened.send(kind(thing)))
 }
@@ -121,7 +131,11 @@ impl Live {
                 drawn = Some(Instant::now());
                 at_once = false;
             }
-            let wait = if self.app.dirty() { drawn.map_or(Duration::ZERO, |drawn| FRAME.saturating_sub(drawn.elapsed())) } else { Duration::MAX };
+            let wait = if self.app.dirty() {
+                drawn.map_or(Duration::ZERO, |drawn| FRAME.saturating_sub(drawn.elapsed()))
+            } else {
+                Duration::MAX
+            };
             let mut next = match inbox.recv_timeout(wait) {
                 Ok(happened) => Some(happened),
                 Err(RecvTimeoutError::Timeout) => None,
@@ -153,7 +167,9 @@ impl Live {
     fn take(&mut self, happened: Happened) -> Next {
         match happened {
             Happened::Terminal(Received::Event(event)) => self.terminal(event),
-            Happened::Terminal(Received::Gone) | Happened::Signal(Signal::HangUp | Signal::Terminate) => Next::End(ExitCode::SUCCESS),
+            Happened::Terminal(Received::Gone) | Happened::Signal(Signal::HangUp | Signal::Terminate) => {
+                Next::End(ExitCode::SUCCESS)
+            }
             Happened::Signal(Signal::Interrupt) => Next::End(ExitCode::from(130)),
             Happened::Signal(Signal::Suspend) => self.effect(Effect::Suspend),
             // It may have been stopped unheard, and a shell had the terminal. What an editor covers is drawn when it ends.

@@ -14,8 +14,12 @@ pub fn graph(program: &Program, machine: MachineId) -> Graph {
     let mut edges = Vec::new();
     for (id, &transition) in program[machine].transitions.iter().enumerate() {
         let transition = &program[transition];
-        let Some(to) = transition.target.filter(|_| transition.kind != TransitionKind::Exit).and_then(index) else { continue };
-        let mut edge = |from| edges.push(Edge { from, to, label: label(program, transition), kind: kind(transition), id: id as u32 });
+        let Some(to) = transition.target.filter(|_| transition.kind != TransitionKind::Exit).and_then(index) else {
+            continue;
+        };
+        let mut edge = |from| {
+            edges.push(Edge { from, to, label: label(program, transition), kind: kind(transition), id: id as u32 })
+        };
         match &transition.sources {
             Sources::Any => edge(states.len()),
             Sources::These { states, .. } => states.iter().filter_map(|&state| index(state)).for_each(edge),
@@ -43,8 +47,13 @@ fn node(program: &Program, state: StateId) -> Node {
         Entry::Spawn(spawn) => spawn.target.map(|(machine, _)| machine),
         Entry::Action(_) => None,
     });
-    let names = spawned.flat_map(|machine| program[machine].states.iter().map(|&state| program[state].name.to_string()));
-    Node { name: program[state].name.to_string(), kind: NodeKind::State, inside: names.max_by_key(|name| name.chars().count()) }
+    let names =
+        spawned.flat_map(|machine| program[machine].states.iter().map(|&state| program[state].name.to_string()));
+    Node {
+        name: program[state].name.to_string(),
+        kind: NodeKind::State,
+        inside: names.max_by_key(|name| name.chars().count()),
+    }
 }
 
 fn kind(transition: &Transition) -> EdgeKind {
@@ -81,6 +90,7 @@ fn shortened(text: &str) -> String {
 /// A machine with the machines written in its states.
 pub fn nested(program: &Program, machine: MachineId) -> Nested {
     let states = program[machine].states.iter().enumerate();
-    let children = states.flat_map(|(index, &state)| program[state].machines.iter().map(move |&inner| (index, nested(program, inner))));
+    let children = states
+        .flat_map(|(index, &state)| program[state].machines.iter().map(move |&inner| (index, nested(program, inner))));
     Nested { name: program[machine].name.to_string(), graph: graph(program, machine), children: children.collect() }
 }

@@ -11,10 +11,7 @@ use ratatui::buffer::Cell;
 use ratatui::layout::{Position, Size};
 
 /// Assumed where the terminal doesn't tell its size.
-const USUAL: Size = Size {
-    width: 80,
-    height: 24,
-};
+const USUAL: Size = Size { width: 80, height: 24 };
 
 pub struct Quiet<W: Write> {
     inner: CrosstermBackend<Pending<W>>,
@@ -38,16 +35,8 @@ enum Unsent {
 
 impl<W: Write> Quiet<W> {
     pub fn new(out: W) -> Self {
-        let inner = CrosstermBackend::new(Pending {
-            bytes: Vec::new(),
-            out,
-        });
-        Quiet {
-            inner,
-            cursor: None,
-            position: None,
-            unsent: Unsent::Nothing,
-        }
+        let inner = CrosstermBackend::new(Pending { bytes: Vec::new(), out });
+        Quiet { inner, cursor: None, position: None, unsent: Unsent::Nothing }
     }
 
     /// To be called when someone else has written to the terminal.
@@ -122,10 +111,7 @@ impl<W: Write> Backend for Quiet<W> {
 
     fn size(&self) -> io::Result<Size> {
         let seen = window_size()?;
-        let size = Size {
-            width: seen.columns,
-            height: seen.rows,
-        };
+        let size = Size { width: seen.columns, height: seen.rows };
         Ok(if size.area() == 0 { USUAL } else { size })
     }
 

@@ -14,9 +14,7 @@ use crossterm::cursor::{Hide, Show};
 use crossterm::event::DisableBracketedPaste;
 use crossterm::execute;
 use crossterm::style::ResetColor;
-use crossterm::terminal::{
-    EnterAlternateScreen, LeaveAlternateScreen, disable_raw_mode, enable_raw_mode,
-};
+use crossterm::terminal::{EnterAlternateScreen, LeaveAlternateScreen, disable_raw_mode, enable_raw_mode};
 use ratatui::{Frame, Terminal};
 
 use super::quiet::Quiet;
@@ -45,9 +43,7 @@ impl Screen {
     /// Whether there is a terminal to enter.
     pub fn check() -> io::Result<()> {
         if !io::stdin().is_terminal() || !io::stdout().is_terminal() {
-            return Err(io::Error::other(
-                "there is no terminal for the screen; `lrp run` works without one",
-            ));
+            return Err(io::Error::other("there is no terminal for the screen; `lrp run` works without one"));
         }
         Ok(())
     }
@@ -65,12 +61,7 @@ impl Screen {
             kept: Mutex::default(),
         });
         let earlier_hook = install_hook(&shared);
-        let mut screen = Screen {
-            terminal,
-            out,
-            shared,
-            earlier_hook,
-        };
+        let mut screen = Screen { terminal, out, shared, earlier_hook };
         screen.resume()?;
         Ok(screen)
     }
@@ -128,12 +119,7 @@ impl Shared {
         }
         let _ = disable_raw_mode();
         let _ = execute!(out, ResetColor, Show, LeaveAlternateScreen);
-        for panic in self
-            .kept
-            .lock()
-            .unwrap_or_else(PoisonError::into_inner)
-            .drain(..)
-        {
+        for panic in self.kept.lock().unwrap_or_else(PoisonError::into_inner).drain(..) {
             say(&panic);
         }
     }
@@ -146,10 +132,7 @@ impl Shared {
             (self.stop_the_robot)();
             say(&explanation(panic));
         } else if self.ours.load(Ordering::Acquire) {
-            self.kept
-                .lock()
-                .unwrap_or_else(PoisonError::into_inner)
-                .push(explanation(panic));
+            self.kept.lock().unwrap_or_else(PoisonError::into_inner).push(explanation(panic));
         } else {
             earlier(panic);
         }
@@ -160,11 +143,7 @@ fn install_hook(shared: &Arc<Shared>) -> Arc<Hook> {
     let earlier: Arc<Hook> = Arc::from(panic::take_hook());
     let (hook, shared) = (earlier.clone(), shared.clone());
     panic::set_hook(Box::new(move |panic| {
-        let mut out = io::stdout()
-            .as_fd()
-            .try_clone_to_owned()
-            .map(File::from)
-            .ok();
+        let mut out = io::stdout().as_fd().try_clone_to_owned().map(File::from).ok();
         shared.panicked(panic, out.as_mut(), &*hook);
     }));
     earlier
@@ -173,12 +152,8 @@ fn install_hook(shared: &Arc<Shared>) -> Arc<Hook> {
 fn explanation(panic: &PanicHookInfo<'_>) -> String {
     let payload = panic.payload();
     let owned = payload.downcast_ref::<String>().map(String::as_str);
-    let what = owned
-        .or(payload.downcast_ref::<&str>().copied())
-        .unwrap_or("no message");
-    let place = panic
-        .location()
-        .map_or(String::from("an unknown place"), ToString::to_string);
+    let what = owned.or(payload.downcast_ref::<&str>().copied()).unwrap_or("no message");
+    let place = panic.location().map_or(String::from("an unknown place"), ToString::to_string);
     let thread = thread::current().name().unwrap_or("unnamed").to_owned();
     let mut text = format!(
         "lrp made a mistake it can't recover from, in its thread `{thread}` at {place}: {what}. \

@@ -6,43 +6,24 @@ mod random;
 use std::cmp::Reverse;
 use std::path::PathBuf;
 
-use lrp::ui::graph::{
-    Edge, EdgeKind, Glyphs, Graph, Nested, Options, Part, Rows, dot, draw, mermaid,
-};
+use lrp::ui::graph::{Edge, EdgeKind, Glyphs, Graph, Nested, Options, Part, Rows, dot, draw, mermaid};
 
 use crate::tracer::{Seen, trace};
 use machines::{fixed_cases, full, graph, line_follower, ring, search};
 
-const UNICODE: Options = Options {
-    glyphs: Glyphs::Unicode,
-    max_width: None,
-    rows: Rows::Two,
-};
-const ASCII: Options = Options {
-    glyphs: Glyphs::Ascii,
-    max_width: None,
-    rows: Rows::Two,
-};
+const UNICODE: Options = Options { glyphs: Glyphs::Unicode, max_width: None, rows: Rows::Two };
+const ASCII: Options = Options { glyphs: Glyphs::Ascii, max_width: None, rows: Rows::Two };
 
-const ONE_ROW: Options = Options {
-    rows: Rows::One,
-    ..UNICODE
-};
+const ONE_ROW: Options = Options { rows: Rows::One, ..UNICODE };
 
 /// Compares a drawing with its file; `UPDATE=1` writes the file instead.
 fn same_as_file(name: &str, text: &str) {
-    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR"))
-        .join("tests/corpus/graph")
-        .join(format!("{name}.txt"));
+    let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/corpus/graph").join(format!("{name}.txt"));
     if std::env::var_os("UPDATE").is_some() {
         std::fs::write(&path, text).expect("the file can be written");
     }
     let expected = std::fs::read_to_string(&path).unwrap_or_default();
-    assert!(
-        text == expected,
-        "{} differs; UPDATE=1 rewrites it. Now it is\n{text}",
-        path.display()
-    );
+    assert!(text == expected, "{} differs; UPDATE=1 rewrites it. Now it is\n{text}", path.display());
 }
 
 #[test]
@@ -56,20 +37,9 @@ fn drawings_look_like_their_files() {
 /// What a reader should find.
 fn meant(graph: &Graph) -> Seen {
     let name = |i: usize| graph.nodes[i].name.clone();
-    let mut edges: Vec<_> = graph
-        .edges
-        .iter()
-        .map(|e| (name(e.from), name(e.to), e.label.clone()))
-        .collect();
+    let mut edges: Vec<_> = graph.edges.iter().map(|e| (name(e.from), name(e.to), e.label.clone())).collect();
     edges.sort();
-    Seen {
-        states: graph
-            .nodes
-            .iter()
-            .map(|node| (node.name.clone(), node.inside.is_some()))
-            .collect(),
-        edges,
-    }
+    Seen { states: graph.nodes.iter().map(|node| (node.name.clone(), node.inside.is_some())).collect(), edges }
 }
 
 #[test]
@@ -88,10 +58,7 @@ fn the_tracer_notices_each_wrong_glyph() {
     for (name, graph) in fixed_cases() {
         for options in [UNICODE, ASCII] {
             let text = draw(&graph, &options).text();
-            for (at, glyph) in text
-                .char_indices()
-                .filter(|(_, c)| !matches!(c, ' ' | '\n'))
-            {
+            for (at, glyph) in text.char_indices().filter(|(_, c)| !matches!(c, ' ' | '\n')) {
                 for other in wrong(glyph) {
                     let mut changed = text.clone();
                     changed.replace_range(at..at + glyph.len_utf8(), &other.to_string());
@@ -109,14 +76,8 @@ fn the_tracer_notices_each_wrong_glyph() {
 /// What to put in a glyph's place: a blank, and what of its own sort means something else.
 fn wrong(glyph: char) -> Vec<char> {
     let sorts = ["─│┼┌┐└┘", "►◄", "▲▼", "▷◁", "△▽", "-|+.'", "<>", "^v"];
-    let sort = sorts
-        .iter()
-        .find(|sort| sort.contains(glyph))
-        .copied()
-        .unwrap_or("");
-    std::iter::once(' ')
-        .chain(sort.chars().filter(|c| *c != glyph))
-        .collect()
+    let sort = sorts.iter().find(|sort| sort.contains(glyph)).copied().unwrap_or("");
+    std::iter::once(' ').chain(sort.chars().filter(|c| *c != glyph)).collect()
 }
 
 #[test]
@@ -124,10 +85,7 @@ fn drawings_stay_within_the_sizes_to_beat() {
     let fits = |graph: &Graph, width: u16, height: u16| {
         let drawing = draw(graph, &UNICODE);
         let size = (drawing.width, drawing.height);
-        assert!(
-            size.0 <= width && size.1 <= height,
-            "{size:?} is not within {width}x{height}"
-        );
+        assert!(size.0 <= width && size.1 <= height, "{size:?} is not within {width}x{height}");
     };
     fits(&line_follower(), 34, 23);
     fits(&full(), 80, 24);
@@ -136,20 +94,10 @@ fn drawings_stay_within_the_sizes_to_beat() {
 
 /// What is read from a drawing within `width` columns, if that leaves all names whole. Its labels may be shortened.
 fn narrowed(graph: &Graph, width: u16, options: &Options) -> Option<Result<Seen, String>> {
-    let drawing = draw(
-        graph,
-        &Options {
-            max_width: Some(width),
-            ..*options
-        },
-    );
+    let drawing = draw(graph, &Options { max_width: Some(width), ..*options });
     let text = drawing.text();
-    let whole = graph
-        .nodes
-        .iter()
-        .all(|node| text.contains(&format!(" {} ", node.name)));
-    (whole && drawing.width <= width)
-        .then(|| trace(&text).map_err(|error| format!("{error}\n{text}")))
+    let whole = graph.nodes.iter().all(|node| text.contains(&format!(" {} ", node.name)));
+    (whole && drawing.width <= width).then(|| trace(&text).map_err(|error| format!("{error}\n{text}")))
 }
 
 /// Whether `seen` has the edges of `meant`, some with the first part of their label and an ellipsis.
@@ -198,30 +146,15 @@ fn cells_know_their_part() {
     for (name, graph) in fixed_cases() {
         let drawing = draw(&graph, &UNICODE);
         let with = |part: Part| {
-            drawing
-                .cells()
-                .iter()
-                .filter(|cell| cell.part == part)
-                .map(|cell| cell.glyph)
-                .collect::<String>()
+            drawing.cells().iter().filter(|cell| cell.part == part).map(|cell| cell.glyph).collect::<String>()
         };
         for (i, node) in graph.nodes.iter().enumerate() {
             assert_eq!(with(Part::Name(i)), node.name, "{name}");
             let rect = drawing.node_rect(i).expect("a box");
             assert_eq!(drawing.cell(rect.x, rect.y).part, Part::Box(i), "{name}");
-            assert_eq!(
-                drawing
-                    .cell(rect.x + rect.width - 1, rect.y + rect.height - 1)
-                    .part,
-                Part::Box(i),
-                "{name}"
-            );
+            assert_eq!(drawing.cell(rect.x + rect.width - 1, rect.y + rect.height - 1).part, Part::Box(i), "{name}");
             let room = node.inside.as_ref().map(|inside| inside.len() as u16);
-            assert!(
-                drawing.inside_rect(i).map(|room| room.width) >= room,
-                "{name}: no room inside {}",
-                node.name
-            );
+            assert!(drawing.inside_rect(i).map(|room| room.width) >= room, "{name}: no room inside {}", node.name);
         }
         for (i, edge) in graph.edges.iter().enumerate() {
             assert_eq!(with(Part::Label(i)), edge.label, "{name}");
@@ -236,18 +169,10 @@ fn a_taken_edge_stands_out_in_heavy_lines_without_moving() {
     let graph = line_follower();
     let drawing = draw(&graph, &UNICODE);
     let bumping = 4;
-    let heavy: String = drawing
-        .heavy_line(bumping)
-        .map(|(_, glyph)| glyph)
-        .collect();
+    let heavy: String = drawing.heavy_line(bumping).map(|(_, glyph)| glyph).collect();
     let light: String = drawing
         .edge_cells(bumping)
-        .filter(|at| {
-            matches!(
-                drawing.cell(at.x, at.y).part,
-                Part::Line(_) | Part::Crossing { .. }
-            )
-        })
+        .filter(|at| matches!(drawing.cell(at.x, at.y).part, Part::Line(_) | Part::Crossing { .. }))
         .map(|at| drawing.cell(at.x, at.y).glyph)
         .collect();
     assert_eq!(light, "┌┼───────│││││└──");
@@ -260,34 +185,15 @@ fn small_drawings() {
     assert_eq!(text(Graph::default()), "");
     assert_eq!(text(graph("a", &[])), "▌ a ▐\n");
     assert_eq!(text(graph("a", &["a->a x"])), "▌ a ▐─x─┐\n▌   ▐◄──┘\n");
-    let edge = |from, to| Edge {
-        from,
-        to,
-        label: "nowhere".to_owned(),
-        kind: EdgeKind::On,
-        id: 0,
-    };
-    assert_eq!(
-        text(Graph {
-            edges: vec![edge(0, 1), edge(7, 0)],
-            ..graph("a", &[])
-        }),
-        "▌ a ▐\n"
-    );
+    let edge = |from, to| Edge { from, to, label: "nowhere".to_owned(), kind: EdgeKind::On, id: 0 };
+    assert_eq!(text(Graph { edges: vec![edge(0, 1), edge(7, 0)], ..graph("a", &[]) }), "▌ a ▐\n");
 }
 
 fn nested() -> Nested {
     Nested {
         name: "follower".to_owned(),
         graph: line_follower(),
-        children: vec![(
-            1,
-            Nested {
-                name: "look \"around\"".to_owned(),
-                graph: search(),
-                children: Vec::new(),
-            },
-        )],
+        children: vec![(1, Nested { name: "look \"around\"".to_owned(), graph: search(), children: Vec::new() })],
     }
 }
 

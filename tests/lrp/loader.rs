@@ -16,9 +16,7 @@ fn folder(files: &[(&str, &[u8])]) -> tempfile::TempDir {
 /// The message, without the temporary folder's name.
 fn complaint(folder: &Path, name: &str) -> String {
     let error = read(&folder.join(name)).unwrap_err();
-    error
-        .to_string()
-        .replace(&format!("{}/", folder.display()), "")
+    error.to_string().replace(&format!("{}/", folder.display()), "")
 }
 
 #[test]
@@ -34,14 +32,8 @@ fn a_text_comes_as_it_stands_under_the_name_the_user_gave() {
 fn a_missing_file_suggests_its_neighbour() {
     let dir = folder(&[("behaviour.lrp", b"x"), ("other.lrp", b"x")]);
     let message = complaint(dir.path(), "behavior.lrp");
-    assert_eq!(
-        message,
-        "behavior.lrp: no such file; did you mean `behaviour.lrp`?"
-    );
-    assert_eq!(
-        complaint(dir.path(), "zzzzzzzz.txt"),
-        "zzzzzzzz.txt: no such file"
-    );
+    assert_eq!(message, "behavior.lrp: no such file; did you mean `behaviour.lrp`?");
+    assert_eq!(complaint(dir.path(), "zzzzzzzz.txt"), "zzzzzzzz.txt: no such file");
 }
 
 #[test]
@@ -55,72 +47,41 @@ fn a_folder_is_never_suggested() {
 fn a_missing_folder_is_named() {
     let dir = folder(&[]);
     let path = dir.path().join("nowhere/a.lrp");
-    let expected = Unreadable::NoFolder {
-        path: path.clone(),
-        folder: dir.path().join("nowhere"),
-    };
+    let expected = Unreadable::NoFolder { path: path.clone(), folder: dir.path().join("nowhere") };
     assert_eq!(read(&path), Err(expected));
-    assert!(
-        read(Path::new("surely-not-here.lrp"))
-            .unwrap_err()
-            .to_string()
-            .ends_with("no such file")
-    );
+    assert!(read(Path::new("surely-not-here.lrp")).unwrap_err().to_string().ends_with("no such file"));
 }
 
 #[test]
 fn a_folder_is_no_program() {
     let dir = folder(&[]);
     fs::create_dir(dir.path().join("robots")).unwrap();
-    assert_eq!(
-        complaint(dir.path(), "robots"),
-        "robots: this is a folder; name a file in it"
-    );
+    assert_eq!(complaint(dir.path(), "robots"), "robots: this is a folder; name a file in it");
 }
 
 #[test]
 fn white_space_is_as_good_as_nothing() {
     let dir = folder(&[("none.lrp", b""), ("blank.lrp", b" \r\n\t\n")]);
-    assert_eq!(
-        complaint(dir.path(), "none.lrp"),
-        "none.lrp: the file is empty"
-    );
-    assert_eq!(
-        complaint(dir.path(), "blank.lrp"),
-        "blank.lrp: the file is empty"
-    );
+    assert_eq!(complaint(dir.path(), "none.lrp"), "none.lrp: the file is empty");
+    assert_eq!(complaint(dir.path(), "blank.lrp"), "blank.lrp: the file is empty");
 }
 
 #[test]
 fn a_byte_that_is_not_utf8_has_its_place() {
     let dir = folder(&[("latin.lrp", b"; one\r; \xC3\xA9t\xE9\n")]);
     let message = complaint(dir.path(), "latin.lrp");
-    assert_eq!(
-        message,
-        "latin.lrp:2:5: not UTF-8 (byte 0xE9); save the file as UTF-8"
-    );
+    assert_eq!(message, "latin.lrp:2:5: not UTF-8 (byte 0xE9); save the file as UTF-8");
 }
 
 #[test]
 fn the_limit_is_sharp_and_a_giant_is_not_read() {
     let dir = folder(&[("full.lrp", &vec![b';'; LIMIT as usize])]);
-    assert_eq!(
-        read(&dir.path().join("full.lrp")).unwrap().text.len() as u64,
-        LIMIT
-    );
+    assert_eq!(read(&dir.path().join("full.lrp")).unwrap().text.len() as u64, LIMIT);
     let over = fs::File::create(dir.path().join("over.lrp")).unwrap();
     over.set_len(LIMIT + 1).unwrap();
-    assert_eq!(
-        complaint(dir.path(), "over.lrp"),
-        "over.lrp: larger than 8 MiB; is this a program?"
-    );
+    assert_eq!(complaint(dir.path(), "over.lrp"), "over.lrp: larger than 8 MiB; is this a program?");
     let endless = read(Path::new("/dev/zero"));
-    assert_eq!(
-        endless,
-        Err(Unreadable::TooLarge {
-            path: "/dev/zero".into()
-        })
-    );
+    assert_eq!(endless, Err(Unreadable::TooLarge { path: "/dev/zero".into() }));
 }
 
 #[test]

@@ -15,9 +15,7 @@ struct Line(Rc<RefCell<Vec<String>>>);
 
 impl Write for Line {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.0
-            .borrow_mut()
-            .push(String::from_utf8_lossy(bytes).into());
+        self.0.borrow_mut().push(String::from_utf8_lossy(bytes).into());
         Ok(bytes.len())
     }
 
@@ -53,10 +51,7 @@ fn a_frame_is_one_write_and_an_unchanged_one_none() {
     frame(&mut quiet, &[(0, 0, &cell), (5, 2, &cell)], None);
     let written = line.take();
     assert_eq!(written.len(), 1);
-    assert!(
-        written[0].contains("\x1b[3;6Hx") && written[0].contains("\x1b[?25l"),
-        "{written:?}"
-    );
+    assert!(written[0].contains("\x1b[3;6Hx") && written[0].contains("\x1b[?25l"), "{written:?}");
     frame(&mut quiet, &[], None);
     frame(&mut quiet, &[], None);
     assert_eq!(line.take(), [""; 0]);
@@ -71,22 +66,12 @@ fn the_cursor_is_moved_only_when_it_is_elsewhere() {
     assert_eq!(line.take(), ["\x1b[?25h\x1b[2;4H"]);
     frame(&mut quiet, &[], at);
     assert_eq!(line.take(), [""; 0]);
-    assert_eq!(
-        quiet.get_cursor_position().unwrap(),
-        Position { x: 3, y: 1 }
-    );
+    assert_eq!(quiet.get_cursor_position().unwrap(), Position { x: 3, y: 1 });
     frame(&mut quiet, &[(0, 0, &Cell::new("x"))], at);
-    assert!(
-        line.take()[0].ends_with("\x1b[2;4H"),
-        "drawing has moved it"
-    );
+    assert!(line.take()[0].ends_with("\x1b[2;4H"), "drawing has moved it");
     quiet.forget();
     frame(&mut quiet, &[], at);
-    assert_eq!(
-        line.take(),
-        ["\x1b[?25h\x1b[2;4H"],
-        "someone else may have moved it"
-    );
+    assert_eq!(line.take(), ["\x1b[?25h\x1b[2;4H"], "someone else may have moved it");
 }
 
 #[test]

@@ -16,29 +16,19 @@ fn text(text: &str) -> Arc<str> {
 }
 
 fn stamp(size: u64) -> Option<Stamp> {
-    Some(Stamp {
-        size,
-        ..Stamp::default()
-    })
+    Some(Stamp { size, ..Stamp::default() })
 }
 
 fn missing() -> Result<Arc<str>, Unreadable> {
-    Err(Unreadable::Missing {
-        path: "a.lrp".into(),
-        nearest: None,
-    })
+    Err(Unreadable::Missing { path: "a.lrp".into(), nearest: None })
 }
 
 fn empty() -> Result<Arc<str>, Unreadable> {
-    Err(Unreadable::Empty {
-        path: "a.lrp".into(),
-    })
+    Err(Unreadable::Empty { path: "a.lrp".into() })
 }
 
 fn forbidden() -> Unreadable {
-    Unreadable::Forbidden {
-        path: "a.lrp".into(),
-    }
+    Unreadable::Forbidden { path: "a.lrp".into() }
 }
 
 /// A file with the text "old", read and still, at time 0.
@@ -56,10 +46,7 @@ fn a_save_is_read_once_it_has_been_still() {
     file.stir(Stir::Whole, ms(110));
     assert_eq!(file.due(), Some(ms(110) + SETTLE));
     assert!(!file.is_due(ms(129)) && file.is_due(ms(130)));
-    assert_eq!(
-        file.found(Ok(text("new")), ms(130)),
-        Some(News::Text(text("new")))
-    );
+    assert_eq!(file.found(Ok(text("new")), ms(130)), Some(News::Text(text("new"))));
     assert_eq!(file.due(), None);
 }
 
@@ -90,18 +77,11 @@ fn saves_that_never_pause_are_read_all_the_same() {
         assert_eq!(file.due(), Some(ms(10 * n) + SETTLE));
     }
     file.stir(Stir::Written, ms(100) + BUSY);
-    assert_eq!(
-        file.due(),
-        Some(ms(100) + BUSY + PATIENCE),
-        "this one isn't whole"
-    );
+    assert_eq!(file.due(), Some(ms(100) + BUSY + PATIENCE), "this one isn't whole");
     file.stir(Stir::Whole, ms(102) + BUSY);
     assert!(file.is_due(ms(102) + BUSY));
     file.look(stamp(1), ms(102) + BUSY);
-    assert!(
-        !file.is_due(ms(102) + BUSY),
-        "the next one came while it was read"
-    );
+    assert!(!file.is_due(ms(102) + BUSY), "the next one came while it was read");
 }
 
 #[test]
@@ -109,10 +89,7 @@ fn a_writer_that_never_closes_is_waited_for_in_vain_only_so_long() {
     let mut file = file();
     file.stir(Stir::Written, ms(100));
     assert_eq!(file.due(), Some(ms(100) + PATIENCE));
-    assert_eq!(
-        file.found(Ok(text("new")), ms(1100)),
-        Some(News::Text(text("new")))
-    );
+    assert_eq!(file.found(Ok(text("new")), ms(1100)), Some(News::Text(text("new"))));
     file.stir(Stir::Touched, ms(2000));
     assert_eq!(file.due(), Some(ms(2000) + SETTLE));
 }
@@ -134,14 +111,8 @@ fn for_a_while_after_a_change_looks_are_not_trusted() {
     file.look(stamp(3), ms(100));
     assert_eq!(file.found(Ok(text("old")), ms(120)), None);
     file.poll(stamp(3), ms(250));
-    assert!(
-        file.is_due(ms(250)),
-        "the same size and time may hide another text"
-    );
-    assert_eq!(
-        file.found(Ok(text("new")), ms(250)),
-        Some(News::Text(text("new")))
-    );
+    assert!(file.is_due(ms(250)), "the same size and time may hide another text");
+    assert_eq!(file.found(Ok(text("new")), ms(250)), Some(News::Text(text("new"))));
 }
 
 #[test]
@@ -175,19 +146,13 @@ fn one_that_comes_back_changed_is_read_as_changed() {
     assert_eq!(file.found(empty(), ms(100)), None);
     let Err(why) = empty() else { unreachable!() };
     assert_eq!(file.found(empty(), ms(1100)), Some(News::Unreadable(why)));
-    assert_eq!(
-        file.found(Ok(text("new")), ms(2000)),
-        Some(News::Text(text("new")))
-    );
+    assert_eq!(file.found(Ok(text("new")), ms(2000)), Some(News::Text(text("new"))));
 }
 
 #[test]
 fn other_trouble_is_told_at_once_and_once() {
     let mut file = file();
-    assert_eq!(
-        file.found(Err(forbidden()), ms(100)),
-        Some(News::Unreadable(forbidden()))
-    );
+    assert_eq!(file.found(Err(forbidden()), ms(100)), Some(News::Unreadable(forbidden())));
     assert_eq!(file.found(Err(forbidden()), ms(200)), None);
     assert_eq!(file.found(Ok(text("old")), ms(300)), Some(News::Back));
 }
@@ -207,8 +172,5 @@ fn of_a_file_without_a_text_only_a_text_is_news() {
     assert_eq!(file.due(), Some(SETTLE));
     assert_eq!(file.found(missing(), ms(20)), None);
     assert_eq!(file.found(missing(), ms(1020)), None);
-    assert_eq!(
-        file.found(Ok(text("new")), ms(2000)),
-        Some(News::Text(text("new")))
-    );
+    assert_eq!(file.found(Ok(text("new")), ms(2000)), Some(News::Text(text("new"))));
 }

@@ -20,8 +20,5 @@ fn each_signal_is_handed_on_by_name() {
         assert_eq!(told.recv_timeout(Duration::from_secs(10)), Ok(name));
     }
     drop(signals);
-    assert!(
-        told.recv().is_err(),
-        "the thread is gone, and the callback with it"
-    );
+    assert!(told.recv().is_err(), "the thread is gone, and the callback with it");
 }

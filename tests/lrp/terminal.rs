@@ -12,11 +12,7 @@ use crossterm::event::KeyCode;
 use portable_pty::CommandBuilder;
 use pty::{Pty, Running};
 
-const PROGRAM: [&str; 3] = [
-    "terminal::a_screen_needs_a_terminal",
-    "--exact",
-    "--nocapture",
-];
+const PROGRAM: [&str; 3] = ["terminal::a_screen_needs_a_terminal", "--exact", "--nocapture"];
 
 /// Also what the other tests start, to have a program with a screen.
 #[test]
@@ -34,15 +30,9 @@ fn a_screen_needs_a_terminal() {
         .output()
         .unwrap();
     assert!(ended.status.success());
-    assert!(
-        !ended.stdout.contains(&0x1b),
-        "nothing meant for a terminal"
-    );
+    assert!(!ended.stdout.contains(&0x1b), "nothing meant for a terminal");
     let said = fs::read_to_string(journal).unwrap();
-    assert_eq!(
-        said,
-        "there is no terminal for the screen; `lrp run` works without one\n"
-    );
+    assert_eq!(said, "there is no terminal for the screen; `lrp run` works without one\n");
 }
 
 struct Stage {
@@ -63,11 +53,7 @@ impl Stage {
         command.env(program::JOURNAL, folder.path().join("journal"));
         command.env("RUST_BACKTRACE", "0");
         let running = pty.run(command);
-        let stage = Stage {
-            pty,
-            running,
-            folder,
-        };
+        let stage = Stage { pty, running, folder };
         stage.sees("<ready>");
         stage
     }
@@ -132,10 +118,7 @@ fn a_panic_of_another_thread_leaves_the_screen_and_is_read_afterwards() {
 #[test]
 fn a_signal_to_end_restores_the_terminal() {
     let before = Pty::new().modes();
-    for (signal, name) in [
-        (libc::SIGTERM, "Terminate\n"),
-        (libc::SIGINT, "Interrupt\n"),
-    ] {
+    for (signal, name) in [(libc::SIGTERM, "Terminate\n"), (libc::SIGINT, "Interrupt\n")] {
         let stage = Stage::new(&[]);
         stage.signal(signal);
         stage.sees_restored("1 passed");
@@ -147,11 +130,7 @@ fn a_signal_to_end_restores_the_terminal() {
 
 #[test]
 fn a_terminal_that_is_gone_is_noticed_by_signal_input_and_output() {
-    let Stage {
-        pty,
-        running,
-        folder,
-    } = Stage::new(&[]);
+    let Stage { pty, running, folder } = Stage::new(&[]);
     pty.unplug("x");
     // How it ends is no matter of ours: the test harness around it has lost its output, too.
     running.wait();
@@ -162,12 +141,7 @@ fn a_terminal_that_is_gone_is_noticed_by_signal_input_and_output() {
 }
 
 /// As an interactive shell does it: the job in a group of its own, in front until it stops.
-const SHELL: [&str; 4] = [
-    "/bin/sh",
-    "-c",
-    "set -m; \"$@\"; echo it stopped; read go; fg; echo it ended",
-    "sh",
-];
+const SHELL: [&str; 4] = ["/bin/sh", "-c", "set -m; \"$@\"; echo it stopped; read go; fg; echo it ended", "sh"];
 
 #[test]
 fn ctrl_z_gives_the_terminal_back_until_it_is_continued() {
@@ -207,12 +181,9 @@ fn a_stop_nobody_announced_is_recovered_from() {
 #[test]
 fn keys_and_sizes_arrive_in_order() {
     let mut stage = Stage::new(&[]);
-    for (keys, frame) in [
-        ("\x1b[A", KeyCode::Up),
-        ("\r", KeyCode::Enter),
-        ("\x1b", KeyCode::Esc),
-        ("\u{e9}", KeyCode::Char('\u{e9}')),
-    ] {
+    for (keys, frame) in
+        [("\x1b[A", KeyCode::Up), ("\r", KeyCode::Enter), ("\x1b", KeyCode::Esc), ("\u{e9}", KeyCode::Char('\u{e9}'))]
+    {
         stage.pty.type_in(keys);
         stage.sees(&format!("<{frame:?}>"));
     }
@@ -228,9 +199,7 @@ fn an_editor_in_front_gets_all_keys_and_can_not_hide() {
     let before = Pty::new().modes();
     let mut stage = Stage::new(&[]);
     stage.pty.type_in("e");
-    stage.pty.wait_for("the screen left", |screen| {
-        !screen.alternate_screen() && !screen.hide_cursor()
-    });
+    stage.pty.wait_for("the screen left", |screen| !screen.alternate_screen() && !screen.hide_cursor());
     assert_eq!(stage.pty.modes(), before);
     stage.pty.type_in("quick\n");
     stage.sees_restored("read quick");

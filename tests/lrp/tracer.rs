@@ -22,25 +22,14 @@ pub fn trace(text: &str) -> Result<Seen, String> {
     let Some(column) = Column::find(&page)? else {
         return match page.cells.iter().flatten().find(|cell| *cell != " ") {
             Some(cell) => Err(format!("{cell:?} without a box")),
-            None => Ok(Seen {
-                states: Vec::new(),
-                edges: Vec::new(),
-            }),
+            None => Ok(Seen { states: Vec::new(), edges: Vec::new() }),
         };
     };
-    let mut tracer = Tracer {
-        page: &page,
-        column: &column,
-        owners: BTreeMap::new(),
-    };
+    let mut tracer = Tracer { page: &page, column: &column, owners: BTreeMap::new() };
     let mut edges = tracer.edges()?;
     tracer.nothing_is_left()?;
     edges.sort();
-    let states = column
-        .boxes
-        .iter()
-        .map(|b| (b.name.clone(), b.nested))
-        .collect();
+    let states = column.boxes.iter().map(|b| (b.name.clone(), b.nested)).collect();
     Ok(Seen { states, edges })
 }
 
@@ -140,9 +129,7 @@ impl Tracer<'_> {
     fn neighbours(&self, (x, y): At) -> Result<(String, String), String> {
         let name = |y: Option<usize>| y.and_then(|y| self.column.at(y)).map(|b| b.name.clone());
         match (name(y.checked_sub(1)), name(Some(y + 1))) {
-            (Some(above), Some(below)) if self.column.left < x && x < self.column.right => {
-                Ok((above, below))
-            }
+            (Some(above), Some(below)) if self.column.left < x && x < self.column.right => Ok((above, below)),
             _ => Err(format!("the arrow at {x},{y} is not between two boxes")),
         }
     }
@@ -163,9 +150,7 @@ impl Tracer<'_> {
                 return if other_arrow {
                     Ok(String::new())
                 } else {
-                    Err(format!(
-                        "the label of the arrow at {arrow:?} touches a line at {at:?}"
-                    ))
+                    Err(format!("the label of the arrow at {arrow:?} touches a line at {at:?}"))
                 };
             }
             clusters.push(cluster);
@@ -182,11 +167,7 @@ impl Tracer<'_> {
         }
         let label = clusters.concat().trim_matches(' ').to_owned();
         for step in 0..columns(&label) {
-            let x = if way == Way::Left {
-                arrow.0 - 2 - step
-            } else {
-                arrow.0 + 2 + step
-            };
+            let x = if way == Way::Left { arrow.0 - 2 - step } else { arrow.0 + 2 + step };
             self.take((x, arrow.1), Use::Whole)?;
         }
         Ok(label)
@@ -211,9 +192,7 @@ impl Tracer<'_> {
             if glyph == self.page.script.crossing {
                 self.take(at, if way.across() { Use::Across } else { Use::Down })?;
             } else if let Some(found) = self.style(glyph, way) {
-                style = style
-                    .and(found)
-                    .ok_or_else(|| format!("the line changes its style at {at:?}"))?;
+                style = style.and(found).ok_or_else(|| format!("the line changes its style at {at:?}"))?;
                 self.take(at, Use::Whole)?;
             } else {
                 way = self.turn(at, way)?;
@@ -232,11 +211,7 @@ impl Tracer<'_> {
     }
 
     fn style(&self, glyph: &str, way: Way) -> Option<Style> {
-        let glyphs = if way.across() {
-            self.page.script.across
-        } else {
-            self.page.script.down
-        };
+        let glyphs = if way.across() { self.page.script.across } else { self.page.script.down };
         let style = Style(glyphs.map(|g| g == glyph));
         (style != Style([false; 3])).then_some(style)
     }
@@ -265,9 +240,7 @@ impl Tracer<'_> {
         match (left, self.is_line((x + 1, y))) {
             (true, false) => Ok(Way::Left),
             (false, true) => Ok(Way::Right),
-            _ => Err(format!(
-                "the corner at {x},{y} may be read in two ways, or none"
-            )),
+            _ => Err(format!("the corner at {x},{y} may be read in two ways, or none")),
         }
     }
 
@@ -282,26 +255,16 @@ impl Tracer<'_> {
         if columns.is_empty() {
             return Ok(String::new());
         }
-        let tail = if way == Way::Left {
-            columns.start
-        } else {
-            columns.end - 1
-        };
+        let tail = if way == Way::Left { columns.start } else { columns.end - 1 };
         let exits = self.page.at((tail, y)) == self.page.script.exit;
-        let joins = self
-            .style(self.page.at((tail, y)), way)
-            .is_some_and(|found| style.and(found).is_some());
+        let joins = self.style(self.page.at((tail, y)), way).is_some_and(|found| style.and(found).is_some());
         if !exits && !joins {
             return Err(format!("the line doesn't reach its source at {tail},{y}"));
         }
         for x in columns.clone() {
             self.take((x, y), Use::Whole)?;
         }
-        let columns = if way == Way::Left {
-            columns.start + 1..columns.end
-        } else {
-            columns.start..columns.end - 1
-        };
+        let columns = if way == Way::Left { columns.start + 1..columns.end } else { columns.start..columns.end - 1 };
         let text = self.page.text(y, columns);
         match self.page.script.padded && !text.is_empty() {
             false => bare(&text),
@@ -314,18 +277,12 @@ impl Tracer<'_> {
     }
 
     fn box_at(&self, y: usize) -> Result<String, String> {
-        self.column
-            .at(y)
-            .map(|b| b.name.clone())
-            .ok_or_else(|| format!("row {y}: a line ends beside no box"))
+        self.column.at(y).map(|b| b.name.clone()).ok_or_else(|| format!("row {y}: a line ends beside no box"))
     }
 
     fn take(&mut self, at: At, used: Use) -> Result<(), String> {
         let owners = self.owners.entry(at).or_default();
-        if owners
-            .iter()
-            .any(|other| *other == Use::Whole || used == Use::Whole || *other == used)
-        {
+        if owners.iter().any(|other| *other == Use::Whole || used == Use::Whole || *other == used) {
             return Err(format!("two things use the cell {at:?}"));
         }
         owners.push(used);
@@ -336,8 +293,7 @@ impl Tracer<'_> {
     fn nothing_is_left(&self) -> Result<(), String> {
         for (y, row) in self.page.cells.iter().enumerate() {
             for x in (0..row.len()).filter(|&x| row[x] != " ") {
-                let boxed =
-                    self.column.at(y).is_some() && self.column.left <= x && x <= self.column.right;
+                let boxed = self.column.at(y).is_some() && self.column.left <= x && x <= self.column.right;
                 match self.owners.get(&(x, y)).map(Vec::as_slice) {
                     None if boxed => {}
                     Some([Use::Whole]) | Some([_, _]) if !boxed => {}

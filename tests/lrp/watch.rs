@@ -38,10 +38,7 @@ impl Desk {
     }
 
     fn known(&self) -> Watched {
-        Watched {
-            path: self.path.clone(),
-            text: Some("old".into()),
-        }
+        Watched { path: self.path.clone(), text: Some("old".into()) }
     }
 }
 
@@ -53,10 +50,7 @@ fn watch(files: impl IntoIterator<Item = Watched>) -> (Watch, Receiver<Saved>) {
 }
 
 fn text(path: &Path, text: &str) -> Saved {
-    Saved::Text {
-        path: path.into(),
-        text: text.into(),
-    }
+    Saved::Text { path: path.into(), text: text.into() }
 }
 
 fn next(told: &Receiver<Saved>) -> Saved {
@@ -76,15 +70,8 @@ fn measure(way: &str, save: impl Fn(&Desk, &str)) {
         })
         .collect();
     took.sort();
-    println!(
-        "{way}: median {:?}, worst {:?} after the save",
-        took[took.len() / 2],
-        took[took.len() - 1]
-    );
-    assert!(
-        took[took.len() / 2] < Duration::from_millis(100),
-        "{way}: {took:?}"
-    );
+    println!("{way}: median {:?}, worst {:?} after the save", took[took.len() / 2], took[took.len() - 1]);
+    assert!(took[took.len() / 2] < Duration::from_millis(100), "{way}: {took:?}");
 }
 
 #[test]
@@ -94,9 +81,7 @@ fn a_save_by_rename_is_told_within_100_ms() {
 
 #[test]
 fn a_save_by_truncating_and_writing_is_told_within_100_ms() {
-    measure("truncate and write", |desk, text| {
-        fs::write(&desk.path, text).unwrap()
-    });
+    measure("truncate and write", |desk, text| fs::write(&desk.path, text).unwrap());
 }
 
 #[test]
@@ -117,10 +102,7 @@ fn a_file_that_grows_for_a_second_is_told_once_at_its_end() {
         let line = format!("; line {n}\n");
         file.write_all(line.as_bytes()).unwrap();
         whole += &line;
-        assert!(
-            told.recv_timeout(Duration::from_millis(100)).is_err(),
-            "told before its end"
-        );
+        assert!(told.recv_timeout(Duration::from_millis(100)).is_err(), "told before its end");
     }
     drop(file);
     assert_eq!(next(&told), text(&desk.path, &whole));
@@ -152,20 +134,10 @@ fn a_deleted_file_is_missed_after_a_second_and_welcomed_back() {
     let (_watch, told) = watch([desk.known()]);
     let gone = Instant::now();
     fs::remove_file(&desk.path).unwrap();
-    assert_eq!(
-        next(&told),
-        Saved::Missing {
-            path: desk.path.clone()
-        }
-    );
+    assert_eq!(next(&told), Saved::Missing { path: desk.path.clone() });
     assert!(gone.elapsed() >= Duration::from_secs(1));
     fs::write(&desk.path, "old").unwrap();
-    assert_eq!(
-        next(&told),
-        Saved::Back {
-            path: desk.path.clone()
-        }
-    );
+    assert_eq!(next(&told), Saved::Back { path: desk.path.clone() });
     fs::write(&desk.path, "new").unwrap();
     assert_eq!(next(&told), text(&desk.path, "new"));
 }
@@ -175,16 +147,8 @@ fn an_empty_file_is_told_after_a_second() {
     let desk = Desk::new();
     let (_watch, told) = watch([desk.known()]);
     fs::write(&desk.path, "").unwrap();
-    let why = Unreadable::Empty {
-        path: desk.path.clone(),
-    };
-    assert_eq!(
-        next(&told),
-        Saved::Unreadable {
-            path: desk.path.clone(),
-            why
-        }
-    );
+    let why = Unreadable::Empty { path: desk.path.clone() };
+    assert_eq!(next(&told), Saved::Unreadable { path: desk.path.clone(), why });
     fs::write(&desk.path, "new").unwrap();
     assert_eq!(next(&told), text(&desk.path, "new"));
 }
@@ -196,10 +160,7 @@ fn a_deleted_folder_may_come_back() {
     let path = folder.join("b.lrp");
     fs::create_dir(&folder).unwrap();
     fs::write(&path, "old").unwrap();
-    let (_watch, told) = watch([Watched {
-        path: path.clone(),
-        text: Some("old".into()),
-    }]);
+    let (_watch, told) = watch([Watched { path: path.clone(), text: Some("old".into()) }]);
     fs::remove_dir_all(&folder).unwrap();
     assert_eq!(next(&told), Saved::Missing { path: path.clone() });
     fs::create_dir(&folder).unwrap();
@@ -215,10 +176,7 @@ fn the_target_of_a_link_is_watched_wherever_it_lies() {
     fs::write(&target, "old").unwrap();
     let link = desk.at("link.lrp");
     symlink("real/target.lrp", &link).unwrap();
-    let (_watch, told) = watch([Watched {
-        path: link.clone(),
-        text: Some("old".into()),
-    }]);
+    let (_watch, told) = watch([Watched { path: link.clone(), text: Some("old".into()) }]);
     fs::write(&target, "in place").unwrap();
     assert_eq!(next(&told), text(&link, "in place"));
     desk.rename_over(&target, "by rename");
@@ -239,10 +197,7 @@ fn a_link_to_a_folder_that_is_replaced_is_noticed() {
     }
     symlink("one", desk.at("current")).unwrap();
     let path = desk.at("current/b.lrp");
-    let (_watch, told) = watch([Watched {
-        path: path.clone(),
-        text: Some("old".into()),
-    }]);
+    let (_watch, told) = watch([Watched { path: path.clone(), text: Some("old".into()) }]);
     symlink("two", desk.at("next")).unwrap();
     fs::rename(desk.at("next"), desk.at("current")).unwrap();
     assert_eq!(next(&told), text(&path, "new"));
@@ -253,21 +208,12 @@ fn the_set_of_files_may_change() {
     let desk = Desk::new();
     let other = desk.at("other.lrp");
     let (watch, told) = watch([desk.known()]);
-    watch.set_paths([
-        desk.known(),
-        Watched {
-            path: other.clone(),
-            text: None,
-        },
-    ]);
+    watch.set_paths([desk.known(), Watched { path: other.clone(), text: None }]);
     fs::write(&other, "imported").unwrap();
     assert_eq!(next(&told), text(&other, "imported"));
     fs::write(&desk.path, "new").unwrap();
     assert_eq!(next(&told), text(&desk.path, "new"));
-    watch.set_paths([Watched {
-        path: other.clone(),
-        text: None,
-    }]);
+    watch.set_paths([Watched { path: other.clone(), text: None }]);
     fs::write(&desk.path, "no longer watched").unwrap();
     fs::write(&other, "still watched").unwrap();
     assert_eq!(next(&told), text(&other, "still watched"));
@@ -289,19 +235,13 @@ fn of_many_saves_the_last_is_always_told() {
     let last = text(&desk.path, "(var x := [999])");
     let mut seen = BTreeSet::new();
     loop {
-        let Saved::Text { path, text: whole } = next(&told) else {
-            panic!("a text")
-        };
+        let Saved::Text { path, text: whole } = next(&told) else { panic!("a text") };
         assert!(seen.insert(whole.clone()), "told twice: {whole}");
         if (Saved::Text { path, text: whole }) == last {
             break;
         }
     }
-    println!(
-        "1,000 saves: {} told, the last after {:?}",
-        seen.len(),
-        complete.elapsed()
-    );
+    println!("1,000 saves: {} told, the last after {:?}", seen.len(), complete.elapsed());
     assert!(open_files() <= before + 64, "files are left open");
 }
 
@@ -309,12 +249,7 @@ fn of_many_saves_the_last_is_always_told() {
 fn the_thread_ends_with_the_watch() {
     let desk = Desk::new();
     let (watch, told) = watch([desk.known()]);
-    OpenOptions::new()
-        .append(true)
-        .open(&desk.path)
-        .unwrap()
-        .write_all(b"er")
-        .unwrap();
+    OpenOptions::new().append(true).open(&desk.path).unwrap().write_all(b"er").unwrap();
     assert_eq!(next(&told), text(&desk.path, "older"));
     drop(watch);
     assert!(told.recv().is_err(), "the callback is gone");

@@ -21,11 +21,7 @@ pub(crate) struct Body {
 
 impl Body {
     pub fn at_rest(pose: Pose) -> Body {
-        Body {
-            pose,
-            linear: 0.0,
-            angular: 0.0,
-        }
+        Body { pose, linear: 0.0, angular: 0.0 }
     }
 
     /// One step toward the wanted speeds. Against a wall the wheels slip: the body keeps only the motion along the wall.
@@ -35,11 +31,7 @@ impl Body {
         let turn = self.angular * STEP;
         let way = Point::toward(self.pose.theta + turn / 2.0) * (self.linear * STEP);
         let place = pushed_out(self.pose.place() + way, world).unwrap_or(self.pose.place());
-        self.pose = Pose {
-            x: place.x,
-            y: place.y,
-            theta: wrapped(self.pose.theta + turn),
-        };
+        self.pose = Pose { x: place.x, y: place.y, theta: wrapped(self.pose.theta + turn) };
     }
 }
 

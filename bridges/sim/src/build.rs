@@ -14,22 +14,16 @@ const MOST_WALLS: usize = 1_000;
 /// How far rounding may put a box or the end of a line off the floor, m.
 pub(crate) const SLACK: f64 = 1e-6;
 
-const SMALLEST_WORLD: &str =
-    "the smallest world is two lines: `size 2 1` and `start 0.5 0.5 heading 0`";
+const SMALLEST_WORLD: &str = "the smallest world is two lines: `size 2 1` and `start 0.5 0.5 heading 0`";
 
 pub(crate) fn world(text: &str) -> Result<World, Vec<Fault>> {
     let top = Place { line: 1, column: 1 };
     if text.len() > MOST_TEXT {
-        return Err(vec![
-            top.fault("the text is too long for a world")
-                .with_help("at most 1 MB"),
-        ]);
+        return Err(vec![top.fault("the text is too long for a world").with_help("at most 1 MB")]);
     }
     let (statements, faults) = read(text);
     if statements.is_empty() && faults.is_empty() {
-        return Err(vec![
-            top.fault("the world is empty").with_help(SMALLEST_WORLD),
-        ]);
+        return Err(vec![top.fault("the world is empty").with_help(SMALLEST_WORLD)]);
     }
     let mut builder = Builder::new(size(&statements), faults);
     for statement in &statements {
@@ -39,14 +33,8 @@ pub(crate) fn world(text: &str) -> Result<World, Vec<Fault>> {
 }
 
 fn size(statements: &[Statement]) -> Option<Size> {
-    let numbers = &statements
-        .iter()
-        .find(|statement| statement.word == Word::Size)?
-        .numbers;
-    Some(Size {
-        width: numbers[0].value,
-        height: numbers[1].value,
-    })
+    let numbers = &statements.iter().find(|statement| statement.word == Word::Size)?.numbers;
+    Some(Size { width: numbers[0].value, height: numbers[1].value })
 }
 
 struct Builder {
@@ -68,14 +56,8 @@ impl Builder {
             size,
             start: None,
             ground: GROUND,
-            light: Mount {
-                ahead: robot::LIGHT_AHEAD,
-                left: 0.0,
-            },
-            range: Mount {
-                ahead: robot::RANGE_AHEAD,
-                left: 0.0,
-            },
+            light: Mount { ahead: robot::LIGHT_AHEAD, left: 0.0 },
+            range: Mount { ahead: robot::RANGE_AHEAD, left: 0.0 },
             lines: Lines::on(size),
             walls: size.map(edges).unwrap_or_default(),
             boxes: Vec::new(),
@@ -112,9 +94,7 @@ impl Builder {
                 let place = self.on_floor(n[0], n[1]);
                 self.lines.put_pen(statement, place, &mut self.faults);
             }
-            Word::Straight | Word::To | Word::Left | Word::Right => {
-                self.lines.draw(statement, &mut self.faults)
-            }
+            Word::Straight | Word::To | Word::Left | Word::Right => self.lines.draw(statement, &mut self.faults),
         }
     }
 
@@ -122,12 +102,8 @@ impl Builder {
     fn once(&mut self, statement: &Statement) {
         match self.seen.iter().find(|(word, _)| *word == statement.word) {
             Some((_, first)) => {
-                let message = format!(
-                    "`{}` was given already, on line {}",
-                    statement.name, first.line
-                );
-                self.faults
-                    .push(statement.place.fault(message).with_help("keep one of them"));
+                let message = format!("`{}` was given already, on line {}", statement.name, first.line);
+                self.faults.push(statement.place.fault(message).with_help("keep one of them"));
             }
             None => self.seen.push((statement.word, statement.place)),
         }
@@ -139,12 +115,7 @@ impl Builder {
             for (number, name, most) in [(x, "x", size.width), (y, "y", size.height)] {
                 if number.value > most {
                     let message = format!("{name} = {} is off the floor", number.value);
-                    self.faults.push(
-                        number
-                            .place
-                            .fault(message)
-                            .with_help(format!("{name} goes from 0 to {most}")),
-                    );
+                    self.faults.push(number.place.fault(message).with_help(format!("{name} goes from 0 to {most}")));
                 }
             }
         }
@@ -153,17 +124,9 @@ impl Builder {
 
     fn wall(&mut self, statement: &Statement) {
         let n = &statement.numbers;
-        let wall = Segment {
-            from: self.on_floor(n[0], n[1]),
-            to: self.on_floor(n[2], n[3]),
-        };
+        let wall = Segment { from: self.on_floor(n[0], n[1]), to: self.on_floor(n[2], n[3]) };
         if wall.length() < 0.001 {
-            self.faults.push(
-                statement
-                    .place
-                    .fault("the wall has no length")
-                    .with_help("its two ends are the same"),
-            );
+            self.faults.push(statement.place.fault("the wall has no length").with_help("its two ends are the same"));
         }
         self.add_walls(statement, &[wall]);
     }
@@ -176,12 +139,8 @@ impl Builder {
             && (high.x > size.width + SLACK || high.y > size.height + SLACK)
         {
             let message = format!("the box reaches to {} {}, off the floor", high.x, high.y);
-            let help = format!(
-                "x goes from 0 to {}, y from 0 to {}",
-                size.width, size.height
-            );
-            self.faults
-                .push(statement.place.fault(message).with_help(help));
+            let help = format!("x goes from 0 to {}, y from 0 to {}", size.width, size.height);
+            self.faults.push(statement.place.fault(message).with_help(help));
         }
         self.add_walls(statement, &sides(low, high));
         self.boxes.push(Block { low, high });
@@ -192,9 +151,8 @@ impl Builder {
             self.walls.extend(walls);
             if self.walls.len() > MOST_WALLS {
                 let fault = statement.place.fault("too many walls");
-                self.faults.push(fault.with_help(format!(
-                    "at most {MOST_WALLS}; a box has four, and so has the floor"
-                )));
+                self.faults
+                    .push(fault.with_help(format!("at most {MOST_WALLS}; a box has four, and so has the floor")));
             }
         }
     }
@@ -202,9 +160,7 @@ impl Builder {
     fn finish(mut self, top: Place) -> Result<World, Vec<Fault>> {
         self.lines.end(&mut self.faults);
         self.require_basics(top);
-        let (Some(size), Some((start, place)), true) =
-            (self.size, self.start, self.faults.is_empty())
-        else {
+        let (Some(size), Some((start, place)), true) = (self.size, self.start, self.faults.is_empty()) else {
             self.faults.sort_by_key(|fault| (fault.line, fault.column));
             self.faults.truncate(MOST_FAULTS);
             return Err(self.faults);
@@ -222,48 +178,29 @@ impl Builder {
         if world.has_room_at(start.place()) {
             return Ok(world);
         }
-        let help = format!(
-            "its body is a disc of {} m radius; move the start or the wall",
-            robot::RADIUS
-        );
-        Err(vec![
-            place
-                .fault("the robot would start in a wall")
-                .with_help(help),
-        ])
+        let help = format!("its body is a disc of {} m radius; move the start or the wall", robot::RADIUS);
+        Err(vec![place.fault("the robot would start in a wall").with_help(help)])
     }
 
     /// Notes a fault when there is no floor or no start; not when the text tried to give one and failed.
     fn require_basics(&mut self, top: Place) {
         let tried = !self.faults.is_empty();
         if self.size.is_none() && !tried {
-            self.faults.push(
-                top.fault("the world has no size")
-                    .with_help("add a line `size WIDTH HEIGHT`, in metres"),
-            );
+            self.faults.push(top.fault("the world has no size").with_help("add a line `size WIDTH HEIGHT`, in metres"));
         }
         if self.start.is_none() && !tried {
-            self.faults.push(
-                top.fault("the robot has no place to start")
-                    .with_help("add a line `start X Y heading DEGREES`"),
-            );
+            self.faults
+                .push(top.fault("the robot has no place to start").with_help("add a line `start X Y heading DEGREES`"));
         }
     }
 }
 
 fn pose(place: Point, heading: Number) -> Pose {
-    Pose {
-        x: place.x,
-        y: place.y,
-        theta: wrapped(heading.value.to_radians()),
-    }
+    Pose { x: place.x, y: place.y, theta: wrapped(heading.value.to_radians()) }
 }
 
 fn mount(numbers: &[Number]) -> Mount {
-    Mount {
-        ahead: numbers[0].value,
-        left: numbers[1].value,
-    }
+    Mount { ahead: numbers[0].value, left: numbers[1].value }
 }
 
 fn edges(size: Size) -> Vec<Segment> {
@@ -271,14 +208,6 @@ fn edges(size: Size) -> Vec<Segment> {
 }
 
 fn sides(low: Point, high: Point) -> [Segment; 4] {
-    let corners = [
-        low,
-        Point::new(high.x, low.y),
-        high,
-        Point::new(low.x, high.y),
-    ];
-    [0, 1, 2, 3].map(|side| Segment {
-        from: corners[side],
-        to: corners[(side + 1) % 4],
-    })
+    let corners = [low, Point::new(high.x, low.y), high, Point::new(low.x, high.y)];
+    [0, 1, 2, 3].map(|side| Segment { from: corners[side], to: corners[(side + 1) % 4] })
 }

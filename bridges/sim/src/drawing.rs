@@ -31,24 +31,13 @@ struct Drawing {
 impl Lines {
     /// No lines yet, on a floor of this size where it is known.
     pub fn on(size: Option<Size>) -> Lines {
-        Lines {
-            size,
-            drawing: None,
-            drawn: Vec::new(),
-            points: 0,
-        }
+        Lines { size, drawing: None, drawn: Vec::new(), points: 0 }
     }
 
     pub fn begin(&mut self, statement: &Statement, faults: &mut Vec<Fault>) {
         self.end(faults);
         let [width, brightness] = [statement.numbers[0].value, statement.numbers[1].value];
-        self.drawing = Some(Drawing {
-            place: statement.place,
-            width,
-            brightness,
-            pen: None,
-            spoilt: false,
-        });
+        self.drawing = Some(Drawing { place: statement.place, width, brightness, pen: None, spoilt: false });
     }
 
     pub fn put_pen(&mut self, statement: &Statement, at: Point, faults: &mut Vec<Fault>) {
@@ -68,12 +57,7 @@ impl Lines {
     }
 
     pub fn draw(&mut self, statement: &Statement, faults: &mut Vec<Fault>) {
-        let Some(Drawing {
-            pen: Some(pen),
-            spoilt,
-            ..
-        }) = &mut self.drawing
-        else {
+        let Some(Drawing { pen: Some(pen), spoilt, .. }) = &mut self.drawing else {
             return self.draw_without_pen(statement, faults);
         };
         if *spoilt {
@@ -84,27 +68,16 @@ impl Lines {
         let added = &pen.points()[before..];
         self.points += added.len();
         let message = match off_floor(added, self.size) {
-            Some(out) => format!(
-                "the line leaves the floor here, at {:.2} {:.2}",
-                out.x, out.y
-            ),
+            Some(out) => format!("the line leaves the floor here, at {:.2} {:.2}", out.x, out.y),
             None if self.points > MOST_POINTS => "the lines have too many pieces".to_owned(),
             None => return,
         };
         *spoilt = true;
-        faults.push(
-            statement
-                .place
-                .fault(message)
-                .with_help("make the floor larger, or the line shorter"),
-        );
+        faults.push(statement.place.fault(message).with_help("make the floor larger, or the line shorter"));
     }
 
     fn draw_without_pen(&mut self, statement: &Statement, faults: &mut Vec<Fault>) {
-        let since = self
-            .drawing
-            .as_ref()
-            .map_or(0, |drawing| drawing.place.line);
+        let since = self.drawing.as_ref().map_or(0, |drawing| drawing.place.line);
         let help = match &mut self.drawing {
             Some(drawing) if drawing.spoilt => return,
             Some(drawing) => {
@@ -125,19 +98,10 @@ impl Lines {
         };
         let points = drawing.pen.map(Pen::into_points).unwrap_or_default();
         if points.len() >= 2 {
-            self.drawn.push(Line {
-                width: drawing.width,
-                brightness: drawing.brightness,
-                points,
-            });
+            self.drawn.push(Line { width: drawing.width, brightness: drawing.brightness, points });
         } else if !drawing.spoilt && !faulty_within(faults, drawing.place.line, usize::MAX) {
             let help = "after `line` comes `from X Y heading DEGREES`, then `straight`, `left`, `right` or `to`";
-            faults.push(
-                drawing
-                    .place
-                    .fault("the line has no pieces")
-                    .with_help(help),
-            );
+            faults.push(drawing.place.fault("the line has no pieces").with_help(help));
         }
     }
 
@@ -158,16 +122,11 @@ fn add_piece(pen: &mut Pen, statement: &Statement) {
 
 /// Whether a line of text after `since` and before `until` has a fault: what is missing may have been meant there.
 fn faulty_within(faults: &[Fault], since: usize, until: usize) -> bool {
-    faults
-        .iter()
-        .any(|fault| fault.line > since && fault.line < until)
+    faults.iter().any(|fault| fault.line > since && fault.line < until)
 }
 
 fn off_floor(points: &[Point], size: Option<Size>) -> Option<Point> {
     let size = size?;
     let inside = |value: f64, most: f64| (-SLACK..=most + SLACK).contains(&value);
-    points
-        .iter()
-        .copied()
-        .find(|point| !inside(point.x, size.width) || !inside(point.y, size.height))
+    points.iter().copied().find(|point| !inside(point.x, size.width) || !inside(point.y, size.height))
 }

@@ -32,12 +32,7 @@ pub(crate) struct Place {
 
 impl Place {
     pub fn fault(self, message: impl Into<String>) -> Fault {
-        Fault {
-            line: self.line,
-            column: self.column,
-            message: message.into(),
-            help: None,
-        }
+        Fault { line: self.line, column: self.column, message: message.into(), help: None }
     }
 }
 
@@ -49,10 +44,7 @@ impl Fault {
 }
 
 /// The candidate that `word` was probably meant to be.
-pub(crate) fn nearest<'a>(
-    word: &str,
-    candidates: impl Iterator<Item = &'a str>,
-) -> Option<&'a str> {
+pub(crate) fn nearest<'a>(word: &str, candidates: impl Iterator<Item = &'a str>) -> Option<&'a str> {
     candidates
         .map(|candidate| (edits(word, candidate), candidate))
         .filter(|(edits, candidate)| *edits < candidate.len() && *edits <= 1 + candidate.len() / 4)

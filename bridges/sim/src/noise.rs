@@ -13,24 +13,14 @@ pub struct Noise {
 
 impl Noise {
     /// Perfect sensors.
-    pub const NONE: Noise = Noise {
-        light: 0.0,
-        range: 0.0,
-    };
+    pub const NONE: Noise = Noise { light: 0.0, range: 0.0 };
 
     /// The same noise without what makes no sense: negative, not a number, larger than any reading.
     pub(crate) fn sensible(self) -> Noise {
         let within = |value: f64, most: f64| {
-            if value.is_nan() {
-                0.0
-            } else {
-                value.clamp(0.0, most)
-            }
+            if value.is_nan() { 0.0 } else { value.clamp(0.0, most) }
         };
-        Noise {
-            light: within(self.light, 255.0),
-            range: within(self.range, crate::robot::MAX_RANGE),
-        }
+        Noise { light: within(self.light, 255.0), range: within(self.range, crate::robot::MAX_RANGE) }
     }
 }
 
@@ -43,8 +33,7 @@ pub(crate) enum Channel {
 
 /// A number from the standard normal distribution, the same for the same arguments.
 pub(crate) fn deviation(seed: u64, tick: u64, channel: Channel) -> f64 {
-    let first =
-        scrambled(scrambled(seed) ^ scrambled(tick.wrapping_mul(4).wrapping_add(channel as u64)));
+    let first = scrambled(scrambled(seed) ^ scrambled(tick.wrapping_mul(4).wrapping_add(channel as u64)));
     let second = scrambled(first);
     // Box-Muller; 1 - u keeps the logarithm away from zero.
     (-2.0 * (1.0 - unit(first)).ln()).sqrt() * (TAU * unit(second)).cos()

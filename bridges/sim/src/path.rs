@@ -21,15 +21,11 @@ pub(crate) enum Side {
 
 impl Pen {
     pub fn new(at: Point, heading: f64) -> Pen {
-        Pen {
-            heading,
-            points: vec![at],
-        }
+        Pen { heading, points: vec![at] }
     }
 
     pub fn straight(&mut self, length: f64) {
-        self.points
-            .push(self.at() + Point::toward(self.heading) * length);
+        self.points.push(self.at() + Point::toward(self.heading) * length);
     }
 
     /// Straight to a point, heading on in that direction.
@@ -52,8 +48,7 @@ impl Pen {
         let largest = 2.0 * (1.0 - SAGITTA / radius).acos();
         let pieces = (angle / largest).ceil().max(1.0);
         for piece in 1..=pieces as usize {
-            self.points
-                .push(centre + Point::toward(start + turn * piece as f64 / pieces) * radius);
+            self.points.push(centre + Point::toward(start + turn * piece as f64 / pieces) * radius);
         }
         self.heading = wrapped(self.heading + turn);
     }

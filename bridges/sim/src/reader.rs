@@ -38,12 +38,7 @@ pub(crate) fn read(text: &str) -> (Vec<Statement>, Vec<Fault>) {
         match form_named(*first) {
             Ok(form) => match numbers(form, *first, rest) {
                 Ok(numbers) => {
-                    statements.push(Statement {
-                        word: form.word,
-                        name: form.name,
-                        place: first.place,
-                        numbers,
-                    });
+                    statements.push(Statement { word: form.word, name: form.name, place: first.place, numbers });
                 }
                 Err(fault) => faults.push(fault),
             },
@@ -55,9 +50,7 @@ pub(crate) fn read(text: &str) -> (Vec<Statement>, Vec<Fault>) {
 
 /// The lines of the text, ended by LF, CRLF or CR.
 fn lines(text: &str) -> impl Iterator<Item = &str> {
-    text.trim_start_matches('\u{feff}')
-        .split('\n')
-        .flat_map(|line| line.strip_suffix('\r').unwrap_or(line).split('\r'))
+    text.trim_start_matches('\u{feff}').split('\n').flat_map(|line| line.strip_suffix('\r').unwrap_or(line).split('\r'))
 }
 
 fn tokens(line: &str, number: usize) -> Vec<Token<'_>> {
@@ -81,34 +74,20 @@ fn tokens(line: &str, number: usize) -> Vec<Token<'_>> {
 }
 
 fn token(text: &str, line: usize, column: usize) -> Token<'_> {
-    Token {
-        text,
-        place: Place {
-            line,
-            column: column + 1,
-        },
-    }
+    Token { text, place: Place { line, column: column + 1 } }
 }
 
 fn form_named(token: Token) -> Result<&'static Form, Fault> {
-    FORMS
-        .iter()
-        .find(|form| form.name == token.text)
-        .ok_or_else(|| {
-            let fault = token
-                .place
-                .fault(format!("unknown word `{}`", shortened(token.text)));
-            match nearest(
-                &token.text.to_lowercase(),
-                FORMS.iter().map(|form| form.name),
-            ) {
-                Some(name) => fault.with_help(format!("did you mean `{name}`?")),
-                None => {
-                    let known: Vec<_> = FORMS.iter().map(|form| form.name).collect();
-                    fault.with_help(format!("a line begins with one of: {}", known.join(", ")))
-                }
+    FORMS.iter().find(|form| form.name == token.text).ok_or_else(|| {
+        let fault = token.place.fault(format!("unknown word `{}`", shortened(token.text)));
+        match nearest(&token.text.to_lowercase(), FORMS.iter().map(|form| form.name)) {
+            Some(name) => fault.with_help(format!("did you mean `{name}`?")),
+            None => {
+                let known: Vec<_> = FORMS.iter().map(|form| form.name).collect();
+                fault.with_help(format!("a line begins with one of: {}", known.join(", ")))
             }
-        })
+        }
+    })
 }
 
 /// The numbers of one statement in the order of its fields. A field's name may stand before its number, and must where an earlier one is left out.
@@ -116,15 +95,9 @@ fn numbers(form: &Form, first: Token, rest: &[Token]) -> Result<Vec<Number>, Fau
     let mut found: Vec<Option<Number>> = vec![None; form.fields.len()];
     let mut tokens = rest.iter().copied();
     while let Some(token) = tokens.next() {
-        let named = form
-            .fields
-            .iter()
-            .position(|field| field.name == token.text);
+        let named = form.fields.iter().position(|field| field.name == token.text);
         let (index, value) = match named {
-            Some(index) => (
-                index,
-                tokens.next().ok_or_else(|| lacks_number(form, token))?,
-            ),
+            Some(index) => (index, tokens.next().ok_or_else(|| lacks_number(form, token))?),
             None => (next_free(form, &found, token)?, token),
         };
         if found[index].is_some() {
@@ -143,30 +116,20 @@ fn numbers(form: &Form, first: Token, rest: &[Token]) -> Result<Vec<Number>, Fau
 }
 
 fn next_free(form: &Form, found: &[Option<Number>], token: Token) -> Result<usize, Fault> {
-    let last_given = found
-        .iter()
-        .rposition(Option::is_some)
-        .map_or(0, |index| index + 1);
+    let last_given = found.iter().rposition(Option::is_some).map_or(0, |index| index + 1);
     if last_given < found.len() {
         return Ok(last_given);
     }
     Err(token
         .place
-        .fault(format!(
-            "`{}` is one too many for `{}`",
-            shortened(token.text),
-            form.name
-        ))
+        .fault(format!("`{}` is one too many for `{}`", shortened(token.text), form.name))
         .with_help(usage(form)))
 }
 
 fn number(form: &Form, field: &Field, token: Token) -> Result<Number, Fault> {
     let value: f64 = token.text.parse().map_err(|_| {
-        let fault = token.place.fault(format!(
-            "`{}` is no number, and `{}` needs one",
-            shortened(token.text),
-            field.name
-        ));
+        let fault =
+            token.place.fault(format!("`{}` is no number, and `{}` needs one", shortened(token.text), field.name));
         match nearest(token.text, form.fields.iter().map(|field| field.name)) {
             Some(name) => fault.with_help(format!("did you mean `{name}`?")),
             None => fault.with_help(usage(form)),
@@ -175,35 +138,20 @@ fn number(form: &Form, field: &Field, token: Token) -> Result<Number, Fault> {
     // A nan is in no range, so it is refused here too.
     if !(field.least..=field.most).contains(&value) {
         let message = format!("`{}` can't be {}", field.name, shortened(token.text));
-        return Err(token
-            .place
-            .fault(message)
-            .with_help(format!("from {} to {}", field.least, field.most)));
+        return Err(token.place.fault(message).with_help(format!("from {} to {}", field.least, field.most)));
     }
-    Ok(Number {
-        value,
-        place: token.place,
-    })
+    Ok(Number { value, place: token.place })
 }
 
 fn left_out(form: &Form, field: &Field, first: Token) -> Result<Number, Fault> {
     match field.default {
-        Some(value) => Ok(Number {
-            value,
-            place: first.place,
-        }),
-        None => Err(first
-            .place
-            .fault(format!("`{}` lacks its `{}`", form.name, field.name))
-            .with_help(usage(form))),
+        Some(value) => Ok(Number { value, place: first.place }),
+        None => Err(first.place.fault(format!("`{}` lacks its `{}`", form.name, field.name)).with_help(usage(form))),
     }
 }
 
 fn lacks_number(form: &Form, token: Token) -> Fault {
-    token
-        .place
-        .fault(format!("a number must follow `{}`", token.text))
-        .with_help(usage(form))
+    token.place.fault(format!("a number must follow `{}`", token.text)).with_help(usage(form))
 }
 
 fn usage(form: &Form) -> String {

@@ -17,13 +17,9 @@ pub(crate) fn light(world: &World, pose: Pose) -> f64 {
 
 /// The share of the sensor's spot that lies on the line. Near enough, the line is straight under so small a spot.
 fn coverage(line: &Line, spot: Point) -> f64 {
-    let distance = line
-        .segments()
-        .map(|piece| piece.nearest(spot).distance(spot))
-        .fold(f64::INFINITY, f64::min);
+    let distance = line.segments().map(|piece| piece.nearest(spot).distance(spot)).fold(f64::INFINITY, f64::min);
     let half = line.width / 2.0;
-    share_below((half - distance) / robot::LIGHT_SPOT)
-        - share_below((-half - distance) / robot::LIGHT_SPOT)
+    share_below((half - distance) / robot::LIGHT_SPOT) - share_below((-half - distance) / robot::LIGHT_SPOT)
 }
 
 /// The share of the unit disc to the left of x = `edge`.
@@ -45,10 +41,6 @@ pub(crate) fn bumper(world: &World, pose: Pose) -> bool {
 pub(crate) fn range(world: &World, pose: Pose) -> f64 {
     // The ray starts beside the axle, inside the body, where no wall can be: the sensor itself may sit right on one.
     let origin = pose.offset(0.0, world.range.left);
-    let hit = world
-        .walls
-        .iter()
-        .filter_map(|wall| wall.met_by_ray(origin, pose.theta))
-        .fold(f64::INFINITY, f64::min);
+    let hit = world.walls.iter().filter_map(|wall| wall.met_by_ray(origin, pose.theta)).fold(f64::INFINITY, f64::min);
     (hit - world.range.ahead).clamp(0.0, robot::MAX_RANGE)
 }

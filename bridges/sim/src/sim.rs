@@ -22,10 +22,7 @@ pub struct Refused(Twist);
 impl fmt::Display for Refused {
     fn fmt(&self, out: &mut fmt::Formatter) -> fmt::Result {
         let Twist { linear, angular } = self.0;
-        write!(
-            out,
-            "the robot can't move at linear {linear} m/s, angular {angular} rad/s: both must be finite numbers"
-        )
+        write!(out, "the robot can't move at linear {linear} m/s, angular {angular} rad/s: both must be finite numbers")
     }
 }
 
@@ -56,15 +53,7 @@ impl Sim {
     /// A robot at rest at the start of `world`. `seed` chooses the noise.
     pub fn new(world: World, noise: Noise, seed: u64) -> Sim {
         let body = Body::at_rest(world.start());
-        Sim {
-            world,
-            noise: noise.sensible(),
-            seed,
-            body,
-            command: None,
-            now: 0,
-            ticks: 0,
-        }
+        Sim { world, noise: noise.sensible(), seed, body, command: None, now: 0, ticks: 0 }
     }
 
     /// Moves on to the program time `t_us`, microseconds. How the way there is split into calls makes no difference.
@@ -116,10 +105,7 @@ impl Sim {
             linear: twist.linear.clamp(-robot::MAX_LINEAR, robot::MAX_LINEAR),
             angular: twist.angular.clamp(-robot::MAX_ANGULAR, robot::MAX_ANGULAR),
         };
-        self.command = Some(Command {
-            twist,
-            until: self.now.saturating_add(robot::DEAD_MAN_US),
-        });
+        self.command = Some(Command { twist, until: self.now.saturating_add(robot::DEAD_MAN_US) });
         Ok(())
     }
 
@@ -136,8 +122,7 @@ impl Sim {
 
     /// Changes the world under the robot. It drives on where it is, unless the start was moved or a wall is in its place: then it is put at the start.
     pub fn replace_world(&mut self, world: World) {
-        let stays =
-            world.start() == self.world.start() && world.has_room_at(self.body.pose.place());
+        let stays = world.start() == self.world.start() && world.has_room_at(self.body.pose.place());
         self.world = world;
         if !stays {
             self.put_at_start();
@@ -165,8 +150,7 @@ impl Sim {
 
     /// The light sensor's reading: 0 dark to 255 bright.
     pub fn light(&self) -> u8 {
-        let reading = sensors::light(&self.world, self.body.pose)
-            + self.noise.light * self.deviation(Channel::Light);
+        let reading = sensors::light(&self.world, self.body.pose) + self.noise.light * self.deviation(Channel::Light);
         reading.round().clamp(0.0, 255.0) as u8
     }
 
@@ -177,8 +161,7 @@ impl Sim {
 
     /// The range sensor's reading: m to the nearest wall ahead, at most [`robot::MAX_RANGE`].
     pub fn range(&self) -> f64 {
-        let reading = sensors::range(&self.world, self.body.pose)
-            + self.noise.range * self.deviation(Channel::Range);
+        let reading = sensors::range(&self.world, self.body.pose) + self.noise.range * self.deviation(Channel::Range);
         reading.clamp(0.0, robot::MAX_RANGE)
     }
 
@@ -187,7 +170,4 @@ impl Sim {
     }
 }
 
-const STANDSTILL: Twist = Twist {
-    linear: 0.0,
-    angular: 0.0,
-};
+const STANDSTILL: Twist = Twist { linear: 0.0, angular: 0.0 };

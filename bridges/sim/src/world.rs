@@ -42,10 +42,7 @@ pub struct Line {
 impl Line {
     /// The straight pieces of the line's middle.
     pub fn segments(&self) -> impl Iterator<Item = Segment> + '_ {
-        self.points.windows(2).map(|ends| Segment {
-            from: ends[0],
-            to: ends[1],
-        })
+        self.points.windows(2).map(|ends| Segment { from: ends[0], to: ends[1] })
     }
 
     /// m
@@ -70,8 +67,7 @@ pub(crate) struct Block {
 
 impl Block {
     fn holds(&self, point: Point) -> bool {
-        (self.low.x..=self.high.x).contains(&point.x)
-            && (self.low.y..=self.high.y).contains(&point.y)
+        (self.low.x..=self.high.x).contains(&point.x) && (self.low.y..=self.high.y).contains(&point.y)
     }
 }
 
@@ -126,18 +122,12 @@ impl World {
 
     /// How far the wall nearest to `place` is, m.
     pub fn clearance(&self, place: Point) -> f64 {
-        self.walls
-            .iter()
-            .map(|wall| wall.nearest(place).distance(place))
-            .fold(f64::INFINITY, f64::min)
+        self.walls.iter().map(|wall| wall.nearest(place).distance(place)).fold(f64::INFINITY, f64::min)
     }
 
     /// Whether the robot's body fits at `place`; it may touch a wall.
     pub(crate) fn has_room_at(&self, place: Point) -> bool {
-        let on_floor = (0.0..=self.size.width).contains(&place.x)
-            && (0.0..=self.size.height).contains(&place.y);
-        on_floor
-            && !self.boxes.iter().any(|block| block.holds(place))
-            && self.clearance(place) >= robot::RADIUS - TOUCH
+        let on_floor = (0.0..=self.size.width).contains(&place.x) && (0.0..=self.size.height).contains(&place.y);
+        on_floor && !self.boxes.iter().any(|block| block.holds(place)) && self.clearance(place) >= robot::RADIUS - TOUCH
     }
 }

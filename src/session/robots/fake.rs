@@ -6,8 +6,8 @@ use std::sync::Arc;
 use serde_json::Value;
 
 use super::{Bridge, Concern, Problems, Stopper};
-use crate::model::description::{Description, Scope};
 use crate::model;
+use crate::model::description::{Description, Scope};
 use crate::runtime::Time;
 use crate::runtime::record::{BridgeState, Health};
 
@@ -23,7 +23,8 @@ impl Fake {
 
 impl Bridge for Fake {
     fn description(&self) -> Description {
-        let unknown = || Description { kind: self.bridge.kind.to_string(), scope: Scope::Open, ..Description::default() };
+        let unknown =
+            || Description { kind: self.bridge.kind.to_string(), scope: Scope::Open, ..Description::default() };
         super::description(&self.bridge).unwrap_or_else(unknown)
     }
 

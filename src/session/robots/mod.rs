@@ -75,7 +75,9 @@ impl Workshop {
     pub fn make(&self, bridge: &model::Bridge, next_file: u16) -> Result<Box<dyn Bridge>, Problems> {
         match (self.robots, &*bridge.kind) {
             (Robots::Fake, _) => Ok(Box::new(fake::Fake::new(bridge))),
-            (Robots::AsProgrammed, "sim") => Ok(Box::new(sim::Simulated::new(bridge, &self.folder, self.seed, FileId(next_file))?)),
+            (Robots::AsProgrammed, "sim") => {
+                Ok(Box::new(sim::Simulated::new(bridge, &self.folder, self.seed, FileId(next_file))?))
+            }
             (Robots::AsProgrammed, kind) => Err(unknown_kind(bridge, kind)),
         }
     }
@@ -85,10 +87,15 @@ fn unknown_kind(bridge: &model::Bridge, kind: &str) -> Problems {
     let near = crate::syntax::nearest::nearest(kind, KINDS.iter().copied());
     let help = match near {
         Some(near) => format!("did you mean `{near}`?"),
-        None => format!("there is: {}; `--bridge {}=sim` runs the program in the simulator", KINDS.join(", "), bridge.name),
+        None => {
+            format!("there is: {}; `--bridge {}=sim` runs the program in the simulator", KINDS.join(", "), bridge.name)
+        }
     };
     let message = format!("there is no bridge of kind `{kind}`");
-    Problems { sources: Vec::new(), diagnostics: vec![Diagnostic::error(Code::UnknownBridge, bridge.span, message).help(help)] }
+    Problems {
+        sources: Vec::new(),
+        diagnostics: vec![Diagnostic::error(Code::UnknownBridge, bridge.span, message).help(help)],
+    }
 }
 
 /// What a kind of bridge offers under the names that its form gives.

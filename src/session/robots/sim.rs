@@ -8,11 +8,11 @@ use lrp_sim::{Noise, Sim, Twist, World};
 use serde_json::{Value, json};
 
 use super::{Bridge, Concern, Problems, Stopper, problem};
-use crate::model::description::{Description, Port, Scope};
 use crate::model;
-use crate::session::loader;
+use crate::model::description::{Description, Port, Scope};
 use crate::runtime::Time;
 use crate::runtime::record::{BridgeState, Health, WorldText};
+use crate::session::loader;
 use crate::syntax::{Code, Diagnostic, FileId, Source, Span};
 
 /// What the form may configure.
@@ -44,7 +44,11 @@ impl Names {
 }
 
 pub fn description(names: &Names) -> Description {
-    let port = |name: &str, message: Value, doc: &str| Port { name: names.get(name).to_string(), message, doc: doc.to_string() };
+    let port = |name: &str, message: Value, doc: &str| Port {
+        name: names.get(name).to_string(),
+        message,
+        doc: doc.to_string(),
+    };
     Description {
         kind: "sim".to_string(),
         inputs: vec![
@@ -136,9 +140,13 @@ fn read_world(bridge: &model::Bridge, file: &Path) -> Result<Source, Problems> {
 fn broken_world(world: &Source, file: FileId, faults: &[lrp_sim::Fault]) -> Problems {
     let diagnostics = faults.iter().map(|fault| {
         let line = world.line_range(fault.line);
-        let start = world.text[line.clone()].char_indices().nth(fault.column.saturating_sub(1)).map_or(line.end, |(at, _)| line.start + at);
+        let start = world.text[line.clone()]
+            .char_indices()
+            .nth(fault.column.saturating_sub(1))
+            .map_or(line.end, |(at, _)| line.start + at);
         let length = world.text[start..line.end].find(char::is_whitespace).unwrap_or(line.end - start);
-        let diagnostic = Diagnostic::error(Code::BadBridge, Span::new(file, start, start + length), fault.message.clone());
+        let diagnostic =
+            Diagnostic::error(Code::BadBridge, Span::new(file, start, start + length), fault.message.clone());
         Diagnostic { help: fault.help.clone(), ..diagnostic }
     });
     Problems { diagnostics: diagnostics.collect(), sources: vec![world.clone()] }

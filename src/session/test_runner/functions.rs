@@ -191,9 +191,11 @@ fn missing_output(bench: &Bench, name: &str) -> Result<Complaint, Complaint> {
 
 fn records(lua: &Lua, api: &Api, kind: Option<&str>) -> mlua::Result<Vec<Value>> {
     if let Some(unknown) = kind.filter(|kind| !What::KINDS.contains(kind)) {
-        return Err(
-            Complaint::new(format!("there are no records `{unknown}`; {}", hint(unknown, What::KINDS.iter().copied()))).into()
-        );
+        return Err(Complaint::new(format!(
+            "there are no records `{unknown}`; {}",
+            hint(unknown, What::KINDS.iter().copied())
+        ))
+        .into());
     }
     let mut told = api.told.borrow_mut();
     let new: Vec<_> =

@@ -1,5 +1,6 @@
 //! Finds the test files that paths stand for. Reads folders, never files.
 
+use std::ffi::OsStr;
 use std::fmt;
 use std::path::{Path, PathBuf};
 
@@ -9,6 +10,8 @@ const ENDING: &str = "_test.lua";
 #[derive(Debug, PartialEq, Eq)]
 pub enum NoTests {
     Missing(PathBuf),
+    /// A file that is no test, such as a program.
+    NotATest(PathBuf),
     /// No test file in any of these.
     Found {
         nowhere: Vec<PathBuf>,
@@ -19,6 +22,9 @@ impl fmt::Display for NoTests {
     fn fmt(&self, f: &mut fmt::Formatter) -> fmt::Result {
         match self {
             NoTests::Missing(path) => write!(f, "{}: no such file or folder", path.display()),
+            NoTests::NotATest(path) => {
+                write!(f, "{}: not a test; tests are Lua files, called `*{ENDING}`", path.display())
+            }
             NoTests::Found { nowhere } => {
                 let places: Vec<String> = nowhere.iter().map(|path| path.display().to_string()).collect();
                 write!(f, "no tests found: there is no `*{ENDING}` in {}", places.join(", "))
@@ -36,7 +42,8 @@ pub fn test_files(paths: &[PathBuf]) -> Result<Vec<PathBuf>, NoTests> {
     for path in paths {
         match path {
             path if path.is_dir() => gather(path, &mut files),
-            path if path.is_file() => files.push(path.clone()),
+            path if path.is_file() && path.extension() == Some(OsStr::new("lua")) => files.push(path.clone()),
+            path if path.is_file() => return Err(NoTests::NotATest(path.clone())),
             path => return Err(NoTests::Missing(path.clone())),
         }
     }

@@ -35,23 +35,15 @@ struct FolderId {
 impl FolderId {
     fn of(folder: &Path) -> Option<FolderId> {
         let seen = folder.metadata().ok()?;
-        Some(FolderId {
-            file: FileId::from(&seen),
-            born: seen.created().ok(),
-        })
+        Some(FolderId { file: FileId::from(&seen), born: seen.created().ok() })
     }
 }
 
 impl Folders {
     /// Calls `tell` from another thread.
     pub fn new(tell: impl Fn(Happened) + Send + 'static) -> Folders {
-        let watcher =
-            notify::recommended_watcher(move |event| happened(event).into_iter().for_each(&tell))
-                .ok();
-        Folders {
-            watcher,
-            watched: HashMap::new(),
-        }
+        let watcher = notify::recommended_watcher(move |event| happened(event).into_iter().for_each(&tell)).ok();
+        Folders { watcher, watched: HashMap::new() }
     }
 
     /// Watches the folders of these files from now on, and no others. To be called again from time to time, for folders
@@ -74,9 +66,7 @@ impl Folders {
             keep
         });
         for (id, folder) in wanted {
-            if !self.watched.contains_key(&id)
-                && watcher.watch(&folder, RecursiveMode::NonRecursive).is_ok()
-            {
+            if !self.watched.contains_key(&id) && watcher.watch(&folder, RecursiveMode::NonRecursive).is_ok() {
                 self.watched.insert(id, folder);
             }
         }
@@ -90,34 +80,21 @@ const LINKS: usize = 40;
 pub fn trail(path: &Path) -> Vec<PathBuf> {
     let start = std::path::absolute(path).unwrap_or_else(|_| path.to_owned());
     let next = |file: &PathBuf| Some(folder(file).join(file.read_link().ok()?));
-    std::iter::successors(Some(start), next)
-        .take(LINKS)
-        .collect()
+    std::iter::successors(Some(start), next).take(LINKS).collect()
 }
 
 fn happened(event: notify::Result<Event>) -> Vec<Happened> {
     let Ok(event) = event else {
-        return vec![Happened {
-            name: None,
-            how: Stir::Touched,
-        }];
+        return vec![Happened { name: None, how: Stir::Touched }];
     };
     let Some(how) = stir(event.kind) else {
         return Vec::new();
     };
     if event.paths.is_empty() || event.need_rescan() {
-        return vec![Happened {
-            name: None,
-            how: Stir::Touched,
-        }];
+        return vec![Happened { name: None, how: Stir::Touched }];
     }
     let names = event.paths.iter().filter_map(|path| path.file_name());
-    names
-        .map(|name| Happened {
-            name: Some(name.to_owned()),
-            how,
-        })
-        .collect()
+    names.map(|name| Happened { name: Some(name.to_owned()), how }).collect()
 }
 
 /// None for what leaves a file as it is; our own reading is among that.

@@ -66,16 +66,7 @@ impl Settling {
     pub fn new(text: Option<Arc<str>>, now: Duration) -> Settling {
         let trouble = text.is_none().then_some(Trouble::Missing);
         let last = Stir::Touched;
-        Settling {
-            stamp: None,
-            stirred: now,
-            last,
-            unread: true,
-            waiting: None,
-            vanished: None,
-            text,
-            trouble,
-        }
+        Settling { stamp: None, stirred: now, last, unread: true, waiting: None, vanished: None, text, trouble }
     }
 
     pub fn stir(&mut self, how: Stir, now: Duration) {
@@ -105,9 +96,7 @@ impl Settling {
 
     /// When to read the file; None while there is no reason to.
     pub fn due(&self) -> Option<Duration> {
-        let busy = self
-            .waiting
-            .is_some_and(|since| self.stirred >= since + BUSY);
+        let busy = self.waiting.is_some_and(|since| self.stirred >= since + BUSY);
         let rest = match self.last {
             Stir::Written => PATIENCE,
             Stir::Whole if busy => Duration::ZERO,
@@ -143,10 +132,8 @@ impl Settling {
     }
 
     fn unreadable(&mut self, why: Unreadable, now: Duration) -> Option<News> {
-        let may_pass = matches!(
-            why,
-            Unreadable::Missing { .. } | Unreadable::NoFolder { .. } | Unreadable::Empty { .. }
-        );
+        let may_pass =
+            matches!(why, Unreadable::Missing { .. } | Unreadable::NoFolder { .. } | Unreadable::Empty { .. });
         if may_pass && now < *self.vanished.get_or_insert(now) + PATIENCE {
             return None;
         }

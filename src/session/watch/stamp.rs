@@ -36,9 +36,6 @@ impl Stamp {
 
 impl From<&Metadata> for FileId {
     fn from(seen: &Metadata) -> FileId {
-        FileId {
-            device: seen.dev(),
-            inode: seen.ino(),
-        }
+        FileId { device: seen.dev(), inode: seen.ino() }
     }
 }

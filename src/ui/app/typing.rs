@@ -40,7 +40,8 @@ impl App {
             KeyCode::Esc => self.overlay = Overlay::Nothing,
             KeyCode::Enter => return self.finish_typing(),
             code => {
-                let replaces = matches!(code, KeyCode::Char(_)) && event.modifiers.difference(KeyModifiers::SHIFT).is_empty();
+                let replaces =
+                    matches!(code, KeyCode::Char(_)) && event.modifiers.difference(KeyModifiers::SHIFT).is_empty();
                 if std::mem::replace(&mut typing.text, Text::Typed) == Text::Present && replaces {
                     typing.input.reset();
                 }

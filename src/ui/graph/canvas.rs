@@ -37,24 +37,12 @@ struct Canvas {
 
 impl Canvas {
     fn block(&mut self, node: usize, block: &Block) {
-        let Rect {
-            x,
-            y,
-            width,
-            height,
-        } = block.rect;
+        let Rect { x, y, width, height } = block.rect;
         self.fill(block.rect, Part::Box(node));
         let (left, right) = self.glyphs.borders();
         for row in y..y.saturating_add(height) {
             self.set(Point { x, y: row }, left, Part::Box(node));
-            self.set(
-                Point {
-                    x: x.saturating_add(width - 1),
-                    y: row,
-                },
-                right,
-                Part::Box(node),
-            );
+            self.set(Point { x: x.saturating_add(width - 1), y: row }, right, Part::Box(node));
         }
         if let Some(room) = block.inside {
             self.fill(room, Part::Inside(node));
@@ -71,28 +59,16 @@ impl Canvas {
         }
         for corner in route.points.windows(3) {
             let (before, after) = (way(corner[0], corner[1]), way(corner[1], corner[2]));
-            self.set(
-                corner[1],
-                self.glyphs.corner(before, after),
-                Part::Line(edge),
-            );
+            self.set(corner[1], self.glyphs.corner(before, after), Part::Line(edge));
         }
         if let (Some(&tail), Some(&next)) = (route.points.first(), route.points.get(1)) {
-            self.set(
-                tail,
-                self.glyphs.tail(kind, way(tail, next)),
-                Part::Line(edge),
-            );
+            self.set(tail, self.glyphs.tail(kind, way(tail, next)), Part::Line(edge));
         }
         if let Some(&head) = route.points.last() {
             self.set(head, self.glyphs.head(kind, route.head), Part::Head(edge));
         }
         if let Some(label) = &route.label {
-            let padding = if route.points.len() > 1 {
-                self.glyphs.label_padding()
-            } else {
-                0
-            };
+            let padding = if route.points.len() > 1 { self.glyphs.label_padding() } else { 0 };
             self.write(label, padding, Part::Label(edge));
         }
     }
@@ -104,11 +80,7 @@ impl Canvas {
                 let at = Point { x, y };
                 let (glyph, part) = match self.drawing.cell(x, y).part {
                     Part::Line(other) if other != edge => {
-                        let (across, down) = if way.is_across() {
-                            (edge, other)
-                        } else {
-                            (other, edge)
-                        };
+                        let (across, down) = if way.is_across() { (edge, other) } else { (other, edge) };
                         (self.glyphs.crossing(), Part::Crossing { across, down })
                     }
                     _ => (self.glyphs.line(kind, way), Part::Line(edge)),
@@ -123,15 +95,7 @@ impl Canvas {
         let Point { x, y } = words.at;
         let padding = super::layout::cell(padding);
         let width = super::layout::cell(words::width(&words.text));
-        self.fill(
-            Rect {
-                x: x.saturating_sub(padding),
-                y,
-                width: width.saturating_add(2 * padding),
-                height: 1,
-            },
-            part,
-        );
+        self.fill(Rect { x: x.saturating_sub(padding), y, width: width.saturating_add(2 * padding), height: 1 }, part);
         let mut x = x;
         for (cluster, width) in words::clusters(&words.text) {
             let mut chars = cluster.chars();

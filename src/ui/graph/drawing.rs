@@ -36,10 +36,7 @@ pub struct Cell {
 }
 
 impl Cell {
-    pub(super) const BLANK: Cell = Cell {
-        glyph: ' ',
-        part: Part::Blank,
-    };
+    pub(super) const BLANK: Cell = Cell { glyph: ' ', part: Part::Blank };
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -87,15 +84,11 @@ impl Drawing {
     /// All cells that show an edge: line, crossings, label and head, in reading order.
     pub fn edge_cells(&self, edge: usize) -> impl Iterator<Item = Point> + '_ {
         let width = usize::from(self.width).max(1);
-        let cells = self
-            .cells
-            .iter()
-            .enumerate()
-            .filter(move |(_, cell)| match cell.part {
-                Part::Line(e) | Part::Label(e) | Part::Head(e) => e == edge,
-                Part::Crossing { across, down } => across == edge || down == edge,
-                _ => false,
-            });
+        let cells = self.cells.iter().enumerate().filter(move |(_, cell)| match cell.part {
+            Part::Line(e) | Part::Label(e) | Part::Head(e) => e == edge,
+            Part::Crossing { across, down } => across == edge || down == edge,
+            _ => false,
+        });
         cells.map(move |(i, _)| super::layout::point(i % width, i / width))
     }
 
@@ -106,9 +99,7 @@ impl Drawing {
             let Cell { glyph, part } = self.cell(at.x, at.y);
             match part {
                 Part::Line(_) => Some((at, glyphs::heavy(glyph))),
-                Part::Crossing { across, .. } if across == edge => {
-                    Some((at, glyphs::heavy_across(glyph)))
-                }
+                Part::Crossing { across, .. } if across == edge => Some((at, glyphs::heavy_across(glyph))),
                 Part::Crossing { .. } => Some((at, glyphs::heavy_down(glyph))),
                 _ => None,
             }
@@ -130,8 +121,7 @@ impl Drawing {
     }
 
     pub(super) fn index(&self, x: u16, y: u16) -> Option<usize> {
-        (x < self.width && y < self.height)
-            .then(|| usize::from(y) * usize::from(self.width) + usize::from(x))
+        (x < self.width && y < self.height).then(|| usize::from(y) * usize::from(self.width) + usize::from(x))
     }
 
     fn symbol_at(&self, i: usize) -> Cow<'_, str> {

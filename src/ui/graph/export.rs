@@ -30,12 +30,7 @@ fn dot_machine(machine: &Nested, id: &str, out: &mut Lines) {
             NodeKind::Any => ", shape=plaintext",
         };
         let line = format!("{id}_{i} [label={}{shape}]", quoted(&node.name));
-        let inside: Vec<&Nested> = machine
-            .children
-            .iter()
-            .filter(|(at, _)| *at == i)
-            .map(|(_, child)| child)
-            .collect();
+        let inside: Vec<&Nested> = machine.children.iter().filter(|(at, _)| *at == i).map(|(_, child)| child).collect();
         if inside.is_empty() {
             out.line(line);
             continue;
@@ -87,11 +82,7 @@ pub fn mermaid(machine: &Nested) -> String {
 fn mermaid_machine(machine: &Nested, id: &str, out: &mut Lines) {
     for (i, node) in machine.graph.nodes.iter().enumerate() {
         out.line(format!("state {} as {id}_{i}", mermaid_quoted(&node.name)));
-        let inside = machine
-            .children
-            .iter()
-            .filter(|(at, _)| *at == i)
-            .enumerate();
+        let inside = machine.children.iter().filter(|(at, _)| *at == i).enumerate();
         for (k, (_, child)) in inside.clone() {
             if k == 0 {
                 out.line(format!("state {id}_{i} {{"));
@@ -106,28 +97,18 @@ fn mermaid_machine(machine: &Nested, id: &str, out: &mut Lines) {
     }
     for edge in edges(&machine.graph) {
         let label = mermaid_text(&edge.label);
-        let label = if label.is_empty() {
-            label
-        } else {
-            format!(" : {label}")
-        };
+        let label = if label.is_empty() { label } else { format!(" : {label}") };
         out.line(format!("{id}_{} --> {id}_{}{label}", edge.from, edge.to));
     }
 }
 
 /// The edges that have both their ends in the graph.
 fn edges(graph: &Graph) -> impl Iterator<Item = &Edge> {
-    graph
-        .edges
-        .iter()
-        .filter(|edge| edge.from.max(edge.to) < graph.nodes.len())
+    graph.edges.iter().filter(|edge| edge.from.max(edge.to) < graph.nodes.len())
 }
 
 fn quoted(text: &str) -> String {
-    let escaped = text
-        .replace('\\', "\\\\")
-        .replace('"', "\\\"")
-        .replace(['\n', '\r'], " ");
+    let escaped = text.replace('\\', "\\\\").replace('"', "\\\"").replace(['\n', '\r'], " ");
     format!("\"{escaped}\"")
 }
 
@@ -141,9 +122,7 @@ fn mermaid_text(text: &str) -> String {
     for c in text.chars() {
         match c {
             '\n' | '\r' => out.push(' '),
-            '"' | '#' | ';' | ':' | '%' | '<' | '>' | '{' | '}' => {
-                out.push_str(&format!("#{};", u32::from(c)))
-            }
+            '"' | '#' | ';' | ':' | '%' | '<' | '>' | '{' | '}' => out.push_str(&format!("#{};", u32::from(c))),
             _ => out.push(c),
         }
     }

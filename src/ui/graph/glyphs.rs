@@ -38,21 +38,7 @@ impl Glyphs {
     /// Whether in a name or label `c` would pass for a part of the drawing.
     pub fn draws(self, c: char) -> bool {
         self == Glyphs::Unicode
-            && matches!(
-                c,
-                '\u{2500}'
-                    ..='\u{259f}'
-                        | '▸'
-                        | '○'
-                        | '►'
-                        | '◄'
-                        | '▲'
-                        | '▼'
-                        | '▷'
-                        | '◁'
-                        | '△'
-                        | '▽'
-            )
+            && matches!(c, '\u{2500}'..='\u{259f}' | '▸' | '○' | '►' | '◄' | '▲' | '▼' | '▷' | '◁' | '△' | '▽')
     }
 
     pub fn ellipsis(self) -> char {
@@ -117,11 +103,7 @@ impl Glyphs {
 
     /// Where a line that went `before` goes `after`, across then up or down or the other way round.
     pub fn corner(self, before: Way, after: Way) -> char {
-        let (across, upright) = if before.is_across() {
-            (before, after)
-        } else {
-            (after, before)
-        };
+        let (across, upright) = if before.is_across() { (before, after) } else { (after, before) };
         // A corner joins two sides of its cell; the first way is walked towards the cell, the second away from it.
         let joins_left = (across == Way::Right) == before.is_across();
         let joins_top = (upright == Way::Down) != before.is_across();

@@ -22,19 +22,11 @@ pub fn cell(at: usize) -> u16 {
 }
 
 pub fn point(x: usize, y: usize) -> Point {
-    Point {
-        x: cell(x),
-        y: cell(y),
-    }
+    Point { x: cell(x), y: cell(y) }
 }
 
 pub fn rect(x: usize, y: usize, width: usize, height: usize) -> Rect {
-    Rect {
-        x: cell(x),
-        y: cell(y),
-        width: cell(width),
-        height: cell(height),
-    }
+    Rect { x: cell(x), y: cell(y), width: cell(width), height: cell(height) }
 }
 
 /// A line of text that starts in the cell `at`.

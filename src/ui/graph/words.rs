@@ -30,8 +30,7 @@ fn stands_alone(cluster: &str) -> bool {
 
 /// Its clusters with their widths in columns.
 pub fn clusters(text: &str) -> impl Iterator<Item = (&str, usize)> {
-    text.graphemes(true)
-        .map(|cluster| (cluster, cluster.width()))
+    text.graphemes(true).map(|cluster| (cluster, cluster.width()))
 }
 
 /// Width in columns.

@@ -5,22 +5,12 @@ use lrp::ui::graph::{Edge, EdgeKind, Graph, Node, NodeKind};
 /// A graph in a line of words: nodes `a b(room) *`, edges `a->b label`; a label's first character may tell the kind.
 pub fn graph(nodes: &str, edges: &[&str]) -> Graph {
     let nodes: Vec<Node> = nodes.split_whitespace().map(node).collect();
-    let index = |name: &str| {
-        nodes
-            .iter()
-            .position(|node| node.name == name)
-            .unwrap_or_else(|| panic!("no node {name}"))
-    };
+    let index =
+        |name: &str| nodes.iter().position(|node| node.name == name).unwrap_or_else(|| panic!("no node {name}"));
     let edges = edges.iter().enumerate().map(|(id, text)| {
         let (ends, label) = text.split_once(' ').unwrap_or((text, ""));
         let (from, to) = ends.split_once("->").expect("an arrow");
-        Edge {
-            from: index(from),
-            to: index(to),
-            label: label.to_owned(),
-            kind: kind(from, label),
-            id: id as u32,
-        }
+        Edge { from: index(from), to: index(to), label: label.to_owned(), kind: kind(from, label), id: id as u32 }
     });
     let edges = edges.collect();
     Graph { nodes, edges }
@@ -31,16 +21,8 @@ fn node(word: &str) -> Node {
         Some((name, room)) => (name, Some(room.trim_end_matches(')').to_owned())),
         None => (word, None),
     };
-    let kind = if name == "*" {
-        NodeKind::Any
-    } else {
-        NodeKind::State
-    };
-    Node {
-        name: name.to_owned(),
-        kind,
-        inside,
-    }
+    let kind = if name == "*" { NodeKind::Any } else { NodeKind::State };
+    Node { name: name.to_owned(), kind, inside }
 }
 
 fn kind(from: &str, label: &str) -> EdgeKind {
@@ -48,9 +30,7 @@ fn kind(from: &str, label: &str) -> EdgeKind {
         _ if from == "*" => EdgeKind::Wildcard,
         "eps" => EdgeKind::Eps,
         _ if label.starts_with("exit") => EdgeKind::Exit,
-        _ if label.ends_with("ms") && label.starts_with(|c: char| c.is_ascii_digit()) => {
-            EdgeKind::Ontime
-        }
+        _ if label.ends_with("ms") && label.starts_with(|c: char| c.is_ascii_digit()) => EdgeKind::Ontime,
         _ => EdgeKind::On,
     }
 }
@@ -94,10 +74,7 @@ pub fn full() -> Graph {
             edges.push(format!("{from}->{to} {}2{}", &from[..1], &to[..1]));
         }
     }
-    graph(
-        &names.join(" "),
-        &edges.iter().map(String::as_str).collect::<Vec<_>>(),
-    )
+    graph(&names.join(" "), &edges.iter().map(String::as_str).collect::<Vec<_>>())
 }
 
 /// A ring of twelve with six chords.
@@ -106,10 +83,7 @@ pub fn ring() -> Graph {
     let chords = (0..6).map(|i| format!("s{i}->s{} chord{i}", i + 6));
     let edges: Vec<String> = ring.chain(chords).collect();
     let names: Vec<String> = (0..12).map(|i| format!("s{i}")).collect();
-    graph(
-        &names.join(" "),
-        &edges.iter().map(String::as_str).collect::<Vec<_>>(),
-    )
+    graph(&names.join(" "), &edges.iter().map(String::as_str).collect::<Vec<_>>())
 }
 
 pub fn loops() -> Graph {

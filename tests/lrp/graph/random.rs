@@ -9,62 +9,27 @@ use crate::tracer::{columns, trace};
 /// A graph of up to `most` states, the last of them perhaps `*`, with up to four times as many edges of all kinds.
 fn any_graph(most: usize) -> impl Strategy<Value = Graph> {
     (2..=most, any::<bool>()).prop_flat_map(|(count, wildcard)| {
-        let nodes =
-            prop::collection::vec((any_name(), prop::option::weighted(0.2, any_name())), count);
+        let nodes = prop::collection::vec((any_name(), prop::option::weighted(0.2, any_name())), count);
         let edge = (0..count, 0..count, any_label(), 0..4usize);
         (nodes, prop::collection::vec(edge, 0..=4 * count))
             .prop_map(move |(nodes, edges)| built(nodes, edges, wildcard))
     })
 }
 
-fn built(
-    nodes: Vec<(String, Option<String>)>,
-    edges: Vec<(usize, usize, String, usize)>,
-    wildcard: bool,
-) -> Graph {
+fn built(nodes: Vec<(String, Option<String>)>, edges: Vec<(usize, usize, String, usize)>, wildcard: bool) -> Graph {
     let last = nodes.len() - 1;
     let is_any = |i: usize| wildcard && i == last;
     let node = |(i, (name, inside))| match is_any(i) {
-        true => Node {
-            name: "*".to_owned(),
-            kind: NodeKind::Any,
-            inside: None,
-        },
-        false => Node {
-            name: format!("{name}{i}"),
-            kind: NodeKind::State,
-            inside,
-        },
+        true => Node { name: "*".to_owned(), kind: NodeKind::Any, inside: None },
+        false => Node { name: format!("{name}{i}"), kind: NodeKind::State, inside },
     };
     let edge = |(id, (from, to, label, kind)): (usize, (usize, usize, String, usize))| {
-        let kind = [
-            EdgeKind::On,
-            EdgeKind::Eps,
-            EdgeKind::Ontime,
-            EdgeKind::Exit,
-        ][kind];
-        let kind = if is_any(from) {
-            EdgeKind::Wildcard
-        } else {
-            kind
-        };
-        Edge {
-            from,
-            to,
-            label,
-            kind,
-            id: id as u32,
-        }
+        let kind = [EdgeKind::On, EdgeKind::Eps, EdgeKind::Ontime, EdgeKind::Exit][kind];
+        let kind = if is_any(from) { EdgeKind::Wildcard } else { kind };
+        Edge { from, to, label, kind, id: id as u32 }
     };
-    let edges = edges
-        .into_iter()
-        .enumerate()
-        .map(edge)
-        .filter(|edge| !is_any(edge.to));
-    Graph {
-        edges: edges.collect(),
-        nodes: nodes.into_iter().enumerate().map(node).collect(),
-    }
+    let edges = edges.into_iter().enumerate().map(edge).filter(|edge| !is_any(edge.to));
+    Graph { edges: edges.collect(), nodes: nodes.into_iter().enumerate().map(node).collect() }
 }
 
 /// Letters of all widths, an accent that combines with the letter before it, and signs that lines are made of.

@@ -66,7 +66,7 @@ fn each_block_of_a_round_has_its_own_time() {
     // Long enough to be seen, short enough for a limit of 20 ms on a busy machine.
     let busy = calibrated(&mut lua, Duration::from_millis(6));
     let start = Instant::now();
-    assert_eq!(lua.run_all(&vec![busy; 8]), None, "{:?}", lua.take_failure());
+    assert_eq!(lua.run_all(&[busy; 8]), None, "{:?}", lua.take_failure());
     assert!(start.elapsed() > Duration::from_millis(25), "the round is longer than one block's time");
 }
 

@@ -10,19 +10,11 @@ use lrp::syntax::{Code, FileId, Source, parse};
 use super::dump::dump;
 
 pub fn programs(folder: &str) -> Vec<(PathBuf, Source)> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR"))
-        .join("tests/corpus")
-        .join(folder);
-    let mut paths: Vec<PathBuf> = fs::read_dir(folder)
-        .unwrap()
-        .map(|entry| entry.unwrap().path())
-        .collect();
+    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/corpus").join(folder);
+    let mut paths: Vec<PathBuf> = fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()).collect();
     paths.retain(|path| path.extension().is_some_and(|extension| extension == "lrp"));
     paths.sort();
-    paths
-        .into_iter()
-        .map(|path| (path.clone(), read(&path)))
-        .collect()
+    paths.into_iter().map(|path| (path.clone(), read(&path))).collect()
 }
 
 fn read(path: &Path) -> Source {
@@ -45,44 +37,24 @@ fn compare(folder: &str, extension: &str, outcome: fn(&Source) -> String) {
             wrong += &format!("--- {}\n{}\n", source.name, difference(&expected, &found));
         }
     }
-    assert!(
-        wrong.is_empty(),
-        "these came out differently (UPDATE=1 accepts them):\n{wrong}"
-    );
+    assert!(wrong.is_empty(), "these came out differently (UPDATE=1 accepts them):\n{wrong}");
 }
 
 /// The lines that differ: those expected and those found, after what both begin and before what both end with.
 fn difference(expected: &str, found: &str) -> String {
     let (a, b): (Vec<&str>, Vec<&str>) = (expected.lines().collect(), found.lines().collect());
     let head = a.iter().zip(&b).take_while(|(a, b)| a == b).count();
-    let tail = a[head..]
-        .iter()
-        .rev()
-        .zip(b[head..].iter().rev())
-        .take_while(|(a, b)| a == b)
-        .count();
-    let gone = a[head..a.len() - tail]
-        .iter()
-        .map(|line| format!("-{line}\n"));
-    let new = b[head..b.len() - tail]
-        .iter()
-        .map(|line| format!("+{line}\n"));
-    format!(
-        "@ line {}\n{}",
-        head + 1,
-        gone.chain(new).collect::<String>()
-    )
+    let tail = a[head..].iter().rev().zip(b[head..].iter().rev()).take_while(|(a, b)| a == b).count();
+    let gone = a[head..a.len() - tail].iter().map(|line| format!("-{line}\n"));
+    let new = b[head..b.len() - tail].iter().map(|line| format!("+{line}\n"));
+    format!("@ line {}\n{}", head + 1, gone.chain(new).collect::<String>())
 }
 
 #[test]
 fn good_programs_give_their_trees() {
     compare("ok", "tree", |source| {
         let parsed = parse(source, FileId(0));
-        render(
-            &parsed.diagnostics,
-            std::slice::from_ref(source),
-            Style::Plain,
-        ) + &dump(&parsed.tree, source)
+        render(&parsed.diagnostics, std::slice::from_ref(source), Style::Plain) + &dump(&parsed.tree, source)
     });
 }
 

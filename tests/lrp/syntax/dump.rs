@@ -6,11 +6,7 @@ use lrp::syntax::ast::*;
 use lrp::syntax::{Source, Span};
 
 pub fn dump(tree: &Tree, source: &Source) -> String {
-    let mut printer = Printer {
-        source,
-        out: String::new(),
-        depth: 0,
-    };
+    let mut printer = Printer { source, out: String::new(), depth: 0 };
     for form in &tree.forms {
         printer.form(form);
     }
@@ -34,17 +30,10 @@ impl Printer<'_> {
         match form {
             Form::Bridge(bridge) => {
                 let config = bridge.config.as_ref().map_or("-".to_string(), block);
-                self.line(
-                    bridge.span,
-                    format!("bridge {} {} {config}", bridge.name.text, bridge.kind.text),
-                );
+                self.line(bridge.span, format!("bridge {} {} {config}", bridge.name.text, bridge.kind.text));
             }
-            Form::Import(import) => {
-                self.line(import.span, format!("import {:?}", import.file.text))
-            }
-            Form::Export(export) => {
-                self.line(export.span, format!("export {}", export.machine.text))
-            }
+            Form::Import(import) => self.line(import.span, format!("import {:?}", import.file.text)),
+            Form::Export(export) => self.line(export.span, format!("export {}", export.machine.text)),
             Form::Var(var) => self.var(var),
             Form::Machine(machine) => self.machine(machine),
             Form::Spawn(spawn) => self.line(spawn.span, format!("spawn {}", target(spawn))),
@@ -54,10 +43,7 @@ impl Printer<'_> {
     }
 
     fn var(&mut self, var: &Var) {
-        self.line(
-            var.span,
-            format!("var {} {}", var.name.text, block(&var.init)),
-        );
+        self.line(var.span, format!("var {} {}", var.name.text, block(&var.init)));
     }
 
     fn machine(&mut self, machine: &Machine) {
@@ -67,10 +53,7 @@ impl Printer<'_> {
             match item {
                 MachineItem::Var(var) => self.var(var),
                 MachineItem::Event(event) => {
-                    self.line(
-                        event.span,
-                        format!("event {} {}", event.name.text, block(&event.block)),
-                    );
+                    self.line(event.span, format!("event {} {}", event.name.text, block(&event.block)));
                 }
                 MachineItem::State(state) => self.state(state),
                 MachineItem::Transition(transition) => self.transition(transition),
@@ -84,9 +67,7 @@ impl Printer<'_> {
         self.depth += 1;
         for item in &state.items {
             match item {
-                StateItem::OnEntry(Entry::Action(b)) => {
-                    self.line(b.span, format!("onentry {}", block(b)))
-                }
+                StateItem::OnEntry(Entry::Action(b)) => self.line(b.span, format!("onentry {}", block(b))),
                 StateItem::OnEntry(Entry::Spawn(spawn)) => {
                     self.line(spawn.span, format!("onentry spawn {}", target(spawn)));
                 }
@@ -105,10 +86,7 @@ impl Printer<'_> {
             TransitionKind::Ontime(t) => format!("ontime {}", timeout(t)),
             TransitionKind::Exit(t) => format!("exit {}", trigger(t)),
         };
-        let name = transition
-            .name
-            .as_ref()
-            .map_or(String::new(), |name| format!(" named {}", name.text));
+        let name = transition.name.as_ref().map_or(String::new(), |name| format!(" named {}", name.text));
         let (from, to) = (sources(&transition.sources), &transition.target.text);
         self.line(transition.span, format!("{kind}: {from} -> {to}{name}"));
     }

@@ -16,25 +16,16 @@ fn kinds(code: &str) -> String {
         TokenKind::Unknown => "?",
     };
     let shown = |kind, text: &str| format!("{}{text}", name(kind));
-    tokens(code)
-        .map(|token| shown(token.kind, &code[token.range]))
-        .collect::<Vec<_>>()
-        .join(" ")
+    tokens(code).map(|token| shown(token.kind, &code[token.range])).collect::<Vec<_>>().join(" ")
 }
 
 #[test]
 fn tokens_are_lua_s() {
     let cases = [
-        (
-            "local x<const> = y.end_",
-            "klocal nx < nconst > = ny . nend_",
-        ),
+        ("local x<const> = y.end_", "klocal nx < nconst > = ny . nend_"),
         ("a..b...c", "na .. nb ... nc"),
         ("a//b>>1~=c::d", "na // nb >> 01 ~= nc :: nd"),
-        (
-            "1 0x1F 1e-3 0x.8p+2 .5 3x 1..2",
-            "01 00x1F 01e-3 00x.8p+2 0.5 03x 01..2",
-        ),
+        ("1 0x1F 1e-3 0x.8p+2 .5 3x 1..2", "01 00x1F 01e-3 00x.8p+2 0.5 03x 01..2"),
         ("a-1-b", "na - 01 - nb"),
         (
             r#" 'it\'s' "a\\" "\z
@@ -60,12 +51,8 @@ fn tokens_are_lua_s() {
 
 #[test]
 fn same_code_sees_through_layout_and_comments_only() {
-    let same = [
-        ("", "  -- nothing\n"),
-        ("x=1", " x = 1 --[[ now ]]\n"),
-        ("f()\ng()", "f() g()"),
-        ("[[a\r\nb]]", "[[a\nb]]"),
-    ];
+    let same =
+        [("", "  -- nothing\n"), ("x=1", " x = 1 --[[ now ]]\n"), ("f()\ng()", "f() g()"), ("[[a\r\nb]]", "[[a\nb]]")];
     let different = [
         ("x = 1", "x = 2"),
         ("a b", "ab"),

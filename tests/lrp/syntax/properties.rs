@@ -74,10 +74,7 @@ fn texts() -> impl Strategy<Value = String> {
 
 /// Programs of the corpus with slices deleted, doubled and moved.
 fn mutations() -> impl Strategy<Value = String> {
-    let texts: Vec<String> = programs("ok")
-        .into_iter()
-        .map(|(_, source)| source.text.to_string())
-        .collect();
+    let texts: Vec<String> = programs("ok").into_iter().map(|(_, source)| source.text.to_string()).collect();
     let change = (any::<Index>(), 0usize..40, any::<Index>(), 0u8..3);
     (select(texts), prop::collection::vec(change, 1..6)).prop_map(|(text, changes)| {
         let mut chars: Vec<char> = text.chars().collect();
@@ -106,10 +103,7 @@ fn check(text: &str) {
     let inside = |span: Span| span.start <= span.end && text.get(span.range()).is_some();
     for (outer, inner) in pairs(&parsed.tree, whole) {
         assert!(inside(inner), "{inner:?} in {text:?}");
-        assert!(
-            outer.start <= inner.start && inner.end <= outer.end,
-            "{inner:?} in {outer:?} of {text:?}"
-        );
+        assert!(outer.start <= inner.start && inner.end <= outer.end, "{inner:?} in {outer:?} of {text:?}");
     }
     for diagnostic in &parsed.diagnostics {
         let also = diagnostic.also.iter().map(|(span, _)| *span);
@@ -120,11 +114,7 @@ fn check(text: &str) {
         one_line(diagnostic, std::slice::from_ref(&source));
     }
     assert!(parsed.diagnostics.len() <= 50);
-    assert!(
-        parsed
-            .diagnostics
-            .is_sorted_by_key(|diagnostic| diagnostic.span.start)
-    );
+    assert!(parsed.diagnostics.is_sorted_by_key(|diagnostic| diagnostic.span.start));
     render(&parsed.diagnostics, &[source], Style::Plain);
     tiles(text);
 }
@@ -134,10 +124,7 @@ fn tiles(text: &str) {
     let mut at = 0;
     for piece in pieces(text, FileId(0), &mut Findings::default()) {
         assert_eq!(piece.start as usize, at, "{text:?}");
-        assert!(
-            piece.end > piece.start && text.get(piece.range()).is_some(),
-            "{piece:?} of {text:?}"
-        );
+        assert!(piece.end > piece.start && text.get(piece.range()).is_some(), "{piece:?} of {text:?}");
         at = piece.end as usize;
     }
     assert_eq!(at, text.len(), "{text:?}");
@@ -225,20 +212,13 @@ fn hard_texts_take_no_time() {
         "-".repeat(n),
         "\t\n ".repeat(n),
         format!("[{}", "--[[ ]] \n (state a".repeat(n)),
-        format!(
-            "(machine m\n{})",
-            "  (state s)\n  (eps s->s)\n".repeat(n / 2)
-        ),
+        format!("(machine m\n{})", "  (state s)\n  (eps s->s)\n".repeat(n / 2)),
     ];
     for text in texts {
         let begun = Instant::now();
         check(&text);
         let taken = begun.elapsed();
-        assert!(
-            taken < Duration::from_secs(5),
-            "{taken:?} for {}",
-            &text[..20]
-        );
+        assert!(taken < Duration::from_secs(5), "{taken:?} for {}", &text[..20]);
     }
 }
 
@@ -260,11 +240,7 @@ fn brackets_nested_too_deep_are_one_finding() {
     ];
     for text in texts {
         let parsed = parse(&Source::new("a.lrp", &*text), FileId(0));
-        let codes: Vec<Code> = parsed
-            .diagnostics
-            .iter()
-            .map(|diagnostic| diagnostic.code)
-            .collect();
+        let codes: Vec<Code> = parsed.diagnostics.iter().map(|diagnostic| diagnostic.code).collect();
         assert_eq!(codes, [Code::NestedTooDeep], "{}", &text[..30]);
     }
 }
@@ -274,20 +250,10 @@ fn a_text_of_the_largest_size_is_read_and_a_larger_one_refused() {
     let line = "(var x := [1])\n";
     let largest = line.repeat(MAX_BYTES / line.len());
     let parsed = parse(&Source::new("a.lrp", &*largest), FileId(0));
-    assert_eq!(
-        (parsed.tree.forms.len(), parsed.diagnostics.len()),
-        (MAX_BYTES / line.len(), 0)
-    );
+    assert_eq!((parsed.tree.forms.len(), parsed.diagnostics.len()), (MAX_BYTES / line.len(), 0));
 
     let larger = largest + line + line;
     let parsed = parse(&Source::new("a.lrp", &*larger), FileId(0));
     assert_eq!(parsed.tree.forms.len(), 0);
-    assert_eq!(
-        parsed
-            .diagnostics
-            .iter()
-            .map(|diagnostic| diagnostic.code)
-            .collect::<Vec<_>>(),
-        [Code::TooLarge]
-    );
+    assert_eq!(parsed.diagnostics.iter().map(|diagnostic| diagnostic.code).collect::<Vec<_>>(), [Code::TooLarge]);
 }

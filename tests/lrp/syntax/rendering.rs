@@ -40,15 +40,11 @@ fn a_byte_order_mark_takes_no_column() {
 
 #[test]
 fn several_diagnostics_come_in_the_order_of_the_program() {
-    let sources = [
-        source("(machine m)\n(spawn n s)\n"),
-        Source::new("b.lrp", "(machine n)\n"),
-    ];
+    let sources = [source("(machine m)\n(spawn n s)\n"), Source::new("b.lrp", "(machine n)\n")];
     let diagnostics = [
         Diagnostic::hint(Code::NoMessageYet, span(1, 0, 1), "third"),
         Diagnostic::warning(Code::NoSpawn, span(0, 19, 20), "second").help("do this"),
-        Diagnostic::error(Code::UnknownMachine, span(0, 12, 18), "first")
-            .also(span(1, 9, 10), "nearly this"),
+        Diagnostic::error(Code::UnknownMachine, span(0, 12, 18), "first").also(span(1, 9, 10), "nearly this"),
     ];
     let expected = "\
 error[unknown-machine]: first
@@ -87,11 +83,7 @@ fn colour_only_adds_escapes() {
     let colour = render(&diagnostics, &[source], Style::Colour);
     let mut stripped = String::new();
     for (i, part) in colour.split('\x1b').enumerate() {
-        let text = if i == 0 {
-            part
-        } else {
-            part.split_once('m').map_or("", |(_, text)| text)
-        };
+        let text = if i == 0 { part } else { part.split_once('m').map_or("", |(_, text)| text) };
         stripped.push_str(text);
     }
     assert_ne!(plain, colour);
@@ -101,9 +93,7 @@ fn colour_only_adds_escapes() {
 #[test]
 fn every_kind_of_line_end_is_one() {
     for end in ["\n", "\r\n", "\r"] {
-        let source = source(&format!(
-            "(machine m{end}  (state a){end}{end}  (sate b)){end}"
-        ));
+        let source = source(&format!("(machine m{end}  (state a){end}{end}  (sate b)){end}"));
         let diagnostics = parse(&source, FileId(0)).diagnostics;
         let text = render(&diagnostics, &[source], Style::Plain);
         assert!(text.contains("--> dir/a.lrp:4:4\n"), "{text}");
@@ -128,11 +118,7 @@ fn lines_stay_readable_however_long_they_are() {
         let diagnostics = parse(&source, FileId(0)).diagnostics;
         assert!(!diagnostics.is_empty());
         let rendered = render(&diagnostics, &[source], Style::Plain);
-        let longest = rendered
-            .lines()
-            .map(|line| line.chars().count())
-            .max()
-            .unwrap_or(0);
+        let longest = rendered.lines().map(|line| line.chars().count()).max().unwrap_or(0);
         assert!(longest <= 200, "{longest}: {rendered}");
     }
 }
@@ -149,8 +135,5 @@ fn places_outside_of_every_text_are_shown_without_one() {
     assert!(text.contains("error[runtime-error]: elsewhere\n"), "{text}");
     assert!(text.contains("--> dir/a.lrp:1:12\n"), "{text}");
     assert_eq!(one_line(&diagnostics[0], &sources), "error: elsewhere");
-    assert_eq!(
-        one_line(&diagnostics[1], &sources),
-        "dir/a.lrp:1:12: error: at the end"
-    );
+    assert_eq!(one_line(&diagnostics[1], &sources), "dir/a.lrp:1:12: error: at the end");
 }

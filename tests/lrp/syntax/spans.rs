@@ -26,14 +26,7 @@ impl Walk {
             Form::Bridge(bridge) => {
                 self.all(whole, &[bridge.span]);
                 self.all(bridge.span, &[bridge.name.span, bridge.kind.span]);
-                self.all(
-                    bridge.span,
-                    &bridge
-                        .config
-                        .iter()
-                        .map(|block| block.span)
-                        .collect::<Vec<_>>(),
-                );
+                self.all(bridge.span, &bridge.config.iter().map(|block| block.span).collect::<Vec<_>>());
             }
             Form::Import(import) => self.all(whole, &[import.span, import.file.span]),
             Form::Export(export) => self.all(whole, &[export.span, export.machine.span]),
@@ -76,9 +69,7 @@ impl Walk {
         for item in &state.items {
             match item {
                 StateItem::OnEntry(Entry::Spawn(spawn)) => self.spawn(state.span, spawn),
-                StateItem::OnEntry(Entry::Action(block))
-                | StateItem::Running(block)
-                | StateItem::OnExit(block) => {
+                StateItem::OnEntry(Entry::Action(block)) | StateItem::Running(block) | StateItem::OnExit(block) => {
                     self.all(state.span, &[block.span]);
                 }
                 StateItem::Machine(machine) => self.machine(state.span, machine),
@@ -90,37 +81,23 @@ impl Walk {
         let span = transition.span;
         self.all(outer, &[span]);
         self.all(span, &[transition.target.span]);
-        self.all(
-            span,
-            &transition
-                .name
-                .iter()
-                .map(|name| name.span)
-                .collect::<Vec<_>>(),
-        );
+        self.all(span, &transition.name.iter().map(|name| name.span).collect::<Vec<_>>());
         match &transition.kind {
-            TransitionKind::On(Trigger::Event(name))
-            | TransitionKind::Exit(Trigger::Event(name)) => {
+            TransitionKind::On(Trigger::Event(name)) | TransitionKind::Exit(Trigger::Event(name)) => {
                 self.all(span, &[name.span]);
             }
-            TransitionKind::On(Trigger::Block(block))
-            | TransitionKind::Exit(Trigger::Block(block)) => {
+            TransitionKind::On(Trigger::Block(block)) | TransitionKind::Exit(Trigger::Block(block)) => {
                 self.all(span, &[block.span]);
             }
             TransitionKind::Eps => {}
-            TransitionKind::Ontime(Timeout::Number { span: number, .. }) => {
-                self.all(span, &[*number])
-            }
+            TransitionKind::Ontime(Timeout::Number { span: number, .. }) => self.all(span, &[*number]),
             TransitionKind::Ontime(Timeout::Variable(name)) => self.all(span, &[name.span]),
             TransitionKind::Ontime(Timeout::Block(block)) => self.all(span, &[block.span]),
         }
         match &transition.sources {
             Sources::One(name) => self.all(span, &[name.span]),
             Sources::Any(star) => self.all(span, &[*star]),
-            Sources::Some(names) => self.all(
-                span,
-                &names.iter().map(|name| name.span).collect::<Vec<_>>(),
-            ),
+            Sources::Some(names) => self.all(span, &names.iter().map(|name| name.span).collect::<Vec<_>>()),
         }
     }
 }

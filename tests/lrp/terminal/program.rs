@@ -39,19 +39,10 @@ pub fn play(journal: &Path) {
     };
     let (tell, told) = mpsc::channel();
     let (signals, keys) = (tell.clone(), tell.clone());
-    let _signals =
-        Signals::watch(move |signal| drop(signals.send(Happened::Signal(signal)))).unwrap();
+    let _signals = Signals::watch(move |signal| drop(signals.send(Happened::Signal(signal)))).unwrap();
     let input = Input::read(move |received| drop(keys.send(Happened::Received(received)))).unwrap();
     let journal = journal.to_owned();
-    let mut program = Program {
-        screen,
-        input,
-        held: None,
-        tell,
-        journal,
-        line: "ready".into(),
-        lost: Vec::new(),
-    };
+    let mut program = Program { screen, input, held: None, tell, journal, line: "ready".into(), lost: Vec::new() };
     while program.draw() {
         if !program.take(told.recv().unwrap()) {
             break;
@@ -60,20 +51,14 @@ pub fn play(journal: &Path) {
 }
 
 fn note(journal: &Path, what: &str) {
-    let mut file = OpenOptions::new()
-        .create(true)
-        .append(true)
-        .open(journal)
-        .unwrap();
+    let mut file = OpenOptions::new().create(true).append(true).open(journal).unwrap();
     writeln!(file, "{what}").unwrap();
 }
 
 impl Program {
     fn draw(&mut self) -> bool {
         let line = format!("<{}>", self.line);
-        let drawn = self
-            .screen
-            .draw(|frame| frame.render_widget(line, frame.area()));
+        let drawn = self.screen.draw(|frame| frame.render_widget(line, frame.area()));
         if drawn.is_err() && self.lost.len() == 2 {
             note(&self.journal, "no output");
             return false;
@@ -117,10 +102,7 @@ impl Program {
             KeyCode::Char('q') => return false,
             KeyCode::Char('p') => panic!("on purpose"),
             KeyCode::Char('t') => {
-                let broken = thread::Builder::new()
-                    .name("aside".into())
-                    .spawn(|| panic!("elsewhere"))
-                    .unwrap();
+                let broken = thread::Builder::new().name("aside".into()).spawn(|| panic!("elsewhere")).unwrap();
                 self.line = format!("it panicked: {}", broken.join().is_err());
             }
             KeyCode::Char('z') => self.suspend(),
@@ -141,11 +123,8 @@ impl Program {
         let script = "read a; echo \"read $a\"; kill -TSTP $$; read b; echo \"read $b\"";
         let command = ["/bin/sh", "-c", script].map(Into::into).into();
         let tell = self.tell.clone();
-        Launch {
-            manner: Manner::Covering,
-            command,
-        }
-        .start(move |result| drop(tell.send(Happened::Edited(result))))
-        .unwrap();
+        Launch { manner: Manner::Covering, command }
+            .start(move |result| drop(tell.send(Happened::Edited(result))))
+            .unwrap();
     }
 }

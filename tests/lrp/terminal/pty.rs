@@ -7,9 +7,7 @@ use std::sync::{Arc, Condvar, Mutex};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-use portable_pty::{
-    Child, CommandBuilder, ExitStatus, MasterPty, PtySize, SlavePty, native_pty_system,
-};
+use portable_pty::{Child, CommandBuilder, ExitStatus, MasterPty, PtySize, SlavePty, native_pty_system};
 
 const AMPLE: Duration = Duration::from_secs(20);
 
@@ -35,10 +33,7 @@ pub struct Running {
 impl Pty {
     pub fn new() -> Pty {
         let pair = native_pty_system().openpty(PtySize::default()).unwrap();
-        let shown = Arc::new(Shown {
-            screen: Mutex::new(vt100::Parser::new(24, 80, 0)),
-            changed: Condvar::new(),
-        });
+        let shown = Arc::new(Shown { screen: Mutex::new(vt100::Parser::new(24, 80, 0)), changed: Condvar::new() });
         let unplugged = Arc::new(AtomicBool::new(false));
         let mut output = pair.master.try_clone_reader().unwrap();
         let keyboard = pair.master.take_writer().unwrap();
@@ -53,14 +48,7 @@ impl Pty {
                 }
             }
         });
-        Pty {
-            master: pair.master,
-            slave: pair.slave,
-            keyboard,
-            shown,
-            reader,
-            unplugged,
-        }
+        Pty { master: pair.master, slave: pair.slave, keyboard, shown, reader, unplugged }
     }
 
     pub fn run(&self, command: CommandBuilder) -> Running {
@@ -83,28 +71,15 @@ impl Pty {
     pub fn resize(&self, cols: u16, rows: u16) {
         // A terminal of another size lays out anew: what is seen from here on is drawn for this one.
         self.shown.screen.lock().unwrap().screen_mut().set_size(rows, cols);
-        self.master
-            .resize(PtySize {
-                rows,
-                cols,
-                ..PtySize::default()
-            })
-            .unwrap();
+        self.master.resize(PtySize { rows, cols, ..PtySize::default() }).unwrap();
     }
 
     /// Waits until the screen is as wanted.
     pub fn wait_for(&self, what: &str, wanted: impl Fn(&vt100::Screen) -> bool) {
         let screen = self.shown.screen.lock().unwrap();
-        let (screen, waited) = self
-            .shown
-            .changed
-            .wait_timeout_while(screen, AMPLE, |screen| !wanted(screen.screen()))
-            .unwrap();
-        assert!(
-            !waited.timed_out(),
-            "waiting for {what}, seeing:\n{}",
-            screen.screen().contents()
-        );
+        let (screen, waited) =
+            self.shown.changed.wait_timeout_while(screen, AMPLE, |screen| !wanted(screen.screen())).unwrap();
+        assert!(!waited.timed_out(), "waiting for {what}, seeing:\n{}", screen.screen().contents());
     }
 
     /// The modes of the line, comparable.

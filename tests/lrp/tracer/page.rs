@@ -55,24 +55,14 @@ impl Page {
         let cells = text.lines().map(|line| {
             let clusters = line.graphemes(true);
             clusters
-                .flat_map(|c| {
-                    [c].into_iter()
-                        .chain(std::iter::repeat_n("", c.width().max(1) - 1))
-                        .map(str::to_owned)
-                })
+                .flat_map(|c| [c].into_iter().chain(std::iter::repeat_n("", c.width().max(1) - 1)).map(str::to_owned))
                 .collect()
         });
-        Page {
-            cells: cells.collect(),
-            script,
-        }
+        Page { cells: cells.collect(), script }
     }
 
     pub fn at(&self, (x, y): At) -> &str {
-        self.cells
-            .get(y)
-            .and_then(|row| row.get(x))
-            .map_or(" ", String::as_str)
+        self.cells.get(y).and_then(|row| row.get(x)).map_or(" ", String::as_str)
     }
 
     pub fn text(&self, y: usize, columns: std::ops::Range<usize>) -> String {
@@ -85,17 +75,9 @@ impl Page {
     fn borders(&self, y: usize) -> Result<Option<(usize, usize)>, String> {
         let columns = |border: &str| -> Vec<usize> {
             let row = self.cells[y].iter().enumerate();
-            row.filter(|(_, cell)| *cell == border)
-                .map(|(x, _)| x)
-                .collect()
+            row.filter(|(_, cell)| *cell == border).map(|(x, _)| x).collect()
         };
-        match self
-            .script
-            .borders
-            .map(columns)
-            .each_ref()
-            .map(Vec::as_slice)
-        {
+        match self.script.borders.map(columns).each_ref().map(Vec::as_slice) {
             [[], []] => Ok(None),
             [&[left], &[right]] if left < right => Ok(Some((left, right))),
             _ => Err(format!("row {y}: a box without both its borders")),
@@ -133,12 +115,7 @@ impl Column {
             }
             match boxes.last_mut() {
                 Some(last) if last.bottom + 1 == y => last.bottom = y,
-                _ => boxes.push(Block {
-                    top: y,
-                    bottom: y,
-                    name: String::new(),
-                    nested: false,
-                }),
+                _ => boxes.push(Block { top: y, bottom: y, name: String::new(), nested: false }),
             }
             let text = page.text(y, left + 1..right);
             let last = boxes.last_mut().expect("one was pushed");

@@ -7,16 +7,8 @@ use crate::follower::{Follower, Search};
 const CURVE: &str = include_str!("../../../../behaviors/worlds/curve.world");
 const BENDS: &str = include_str!("../../../../behaviors/worlds/bends.world");
 
-const GOOD: Follower = Follower {
-    forward: 0.2,
-    search: 1.0,
-    maxlook: 2,
-    ways: Search::BothWays,
-};
-const NOISE: Noise = Noise {
-    light: 5.0,
-    range: 0.01,
-};
+const GOOD: Follower = Follower { forward: 0.2, search: 1.0, maxlook: 2, ways: Search::BothWays };
+const NOISE: Noise = Noise { light: 5.0, range: 0.01 };
 
 /// Each course with the time a follower has for it, s.
 const COURSES: [(&str, &str, u64); 2] = [("curve", CURVE, 180), ("bends", BENDS, 240)];
@@ -32,9 +24,7 @@ fn all_finish(course: (&str, &str, u64), followers: impl Iterator<Item = (Follow
     let (mut fastest, mut slowest) = (f64::INFINITY, 0.0_f64);
     for (follower, noise, seed) in followers {
         let run = follower.run(&world, noise, seed, allowed);
-        let time = run
-            .finished()
-            .unwrap_or_else(|| panic!("{name}: {follower:?}, seed {seed}: {run:?}"));
+        let time = run.finished().unwrap_or_else(|| panic!("{name}: {follower:?}, seed {seed}: {run:?}"));
         fastest = fastest.min(time);
         slowest = slowest.max(time);
     }
@@ -45,12 +35,7 @@ fn all_finish(course: (&str, &str, u64), followers: impl Iterator<Item = (Follow
 fn choices() -> impl Iterator<Item = Follower> {
     [0.2, 0.25, 0.3].into_iter().flat_map(|forward| {
         [1.0, 1.2, 1.5].into_iter().flat_map(move |search| {
-            [2, 3].into_iter().map(move |maxlook| Follower {
-                forward,
-                search,
-                maxlook,
-                ways: Search::BothWays,
-            })
+            [2, 3].into_iter().map(move |maxlook| Follower { forward, search, maxlook, ways: Search::BothWays })
         })
     })
 }
@@ -113,10 +98,7 @@ fn the_strands_of_the_hard_course_are_too_far_apart_to_be_confused() {
             // Closer along the line than a half circle of that width, it is the same strand.
             if other_way - way > 0.7 {
                 let apart = (x - other_x).hypot(y - other_y);
-                assert!(
-                    apart >= 0.35,
-                    "{apart} m apart at {x} {y} and {other_x} {other_y}"
-                );
+                assert!(apart >= 0.35, "{apart} m apart at {x} {y} and {other_x} {other_y}");
             }
         }
     }

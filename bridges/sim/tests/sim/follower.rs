@@ -86,10 +86,7 @@ impl Follower {
     }
 
     fn looking(&self) -> State {
-        State::Looking {
-            quarter: 0,
-            left: self.maxlook,
-        }
+        State::Looking { quarter: 0, left: self.maxlook }
     }
 
     fn next(&self, state: State, light: u8) -> State {
@@ -98,15 +95,9 @@ impl Follower {
             State::Looking { .. } if light < LIMIT - MARGIN => State::Moving,
             State::Looking { quarter, left: 1 } => {
                 let sweep = (quarter + 1) / 4;
-                State::Looking {
-                    quarter: quarter + 1,
-                    left: self.maxlook << sweep.min(12),
-                }
+                State::Looking { quarter: quarter + 1, left: self.maxlook << sweep.min(12) }
             }
-            State::Looking { quarter, left } => State::Looking {
-                quarter,
-                left: left - 1,
-            },
+            State::Looking { quarter, left } => State::Looking { quarter, left: left - 1 },
             State::Back { left: 1 } => State::Turn { left: TURN_STEPS },
             State::Back { left } => State::Back { left: left - 1 },
             State::Turn { left: 1 } => self.looking(),
@@ -128,9 +119,7 @@ impl Follower {
     /// Look to a side, return, look to the other side, return; a one-sided follower looks to the same side again.
     fn side(&self, quarter: u32) -> f64 {
         match (self.ways, quarter) {
-            (Search::BothWays, 0 | 3) | (Search::OnlyLeft, 0 | 2) | (Search::OnlyRight, 1 | 3) => {
-                1.0
-            }
+            (Search::BothWays, 0 | 3) | (Search::OnlyLeft, 0 | 2) | (Search::OnlyRight, 1 | 3) => 1.0,
             _ => -1.0,
         }
     }

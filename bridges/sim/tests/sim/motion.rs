@@ -27,10 +27,7 @@ fn drive(sim: &mut Sim, linear: f64, angular: f64, seconds: f64) {
 
 fn clearance(sim: &Sim) -> f64 {
     let pose = sim.pose();
-    sim.world().clearance(Point {
-        x: pose.x,
-        y: pose.y,
-    })
+    sim.world().clearance(Point { x: pose.x, y: pose.y })
 }
 
 #[test]
@@ -66,11 +63,7 @@ fn driving_while_turning_makes_a_circle() {
 #[test]
 fn the_dead_man_stops_it_half_a_second_after_the_last_command() {
     let mut sim = open_floor();
-    sim.drive(Twist {
-        linear: 0.3,
-        angular: 1.0,
-    })
-    .unwrap();
+    sim.drive(Twist { linear: 0.3, angular: 1.0 }).unwrap();
     sim.advance_to(500_000);
     let lapsed = sim.pose();
     sim.advance_to(620_000);
@@ -97,28 +90,13 @@ fn too_fast_is_brought_to_the_limits_and_no_number_is_refused() {
     let (x, theta) = (sim.pose().x, sim.pose().theta);
     assert!(x.is_finite() && theta.is_finite());
     for bad in [f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
-        assert!(
-            sim.drive(Twist {
-                linear: bad,
-                angular: 0.0
-            })
-            .is_err()
-        );
-        let refused = sim
-            .drive(Twist {
-                linear: 0.0,
-                angular: bad,
-            })
-            .unwrap_err();
+        assert!(sim.drive(Twist { linear: bad, angular: 0.0 }).is_err());
+        let refused = sim.drive(Twist { linear: 0.0, angular: bad }).unwrap_err();
         assert!(refused.to_string().contains("finite"), "{refused}");
     }
     let mut straight = open_floor();
     drive(&mut straight, 1e300, 0.0, 1.2);
-    assert!(
-        (straight.pose().x - 10.66).abs() < 0.001,
-        "{:?}",
-        straight.pose()
-    );
+    assert!((straight.pose().x - 10.66).abs() < 0.001, "{:?}", straight.pose());
 }
 
 #[test]

@@ -52,12 +52,7 @@ impl Columns {
             _ => FRAME + texts.widest(limits),
         };
         let lanes = |side| Lanes::new(stack, texts, limits, side, box_width);
-        Columns {
-            limits,
-            box_width,
-            left: lanes(Side::Left),
-            right: lanes(Side::Right),
-        }
+        Columns { limits, box_width, left: lanes(Side::Left), right: lanes(Side::Right) }
     }
 
     pub fn width(&self) -> usize {
@@ -108,17 +103,9 @@ impl Lanes {
             }
         }
         let lanes = lanes::assign(&tracks, &reach);
-        let text = reach
-            .iter()
-            .max()
-            .map_or(0, |reach| reach.saturating_sub(CLEARANCE));
+        let text = reach.iter().max().map_or(0, |reach| reach.saturating_sub(CLEARANCE));
         let extent = lanes.iter().copied().max().unwrap_or(0).max(text);
-        Lanes {
-            edges,
-            tracks,
-            lanes,
-            extent,
-        }
+        Lanes { edges, tracks, lanes, extent }
     }
 
     /// The lane of an edge that runs on this side.

@@ -10,10 +10,7 @@ pub struct Track {
 
 impl Track {
     pub fn between(a: usize, b: usize) -> Track {
-        Track {
-            top: a.min(b),
-            bottom: a.max(b),
-        }
+        Track { top: a.min(b), bottom: a.max(b) }
     }
 
     pub fn covers(self, row: usize) -> bool {
@@ -32,16 +29,11 @@ pub fn assign(tracks: &[Track], reach: &[usize]) -> Vec<usize> {
     let mut lanes = vec![0; tracks.len()];
     for i in order {
         let track = tracks[i];
-        let mut lane = 1 + reach[track.top..=track.bottom]
-            .iter()
-            .max()
-            .copied()
-            .unwrap_or(0);
-        while taken.get(lane).is_some_and(|others| {
-            others
-                .iter()
-                .any(|o| o.top <= track.bottom && track.top <= o.bottom)
-        }) {
+        let mut lane = 1 + reach[track.top..=track.bottom].iter().max().copied().unwrap_or(0);
+        while taken
+            .get(lane)
+            .is_some_and(|others| others.iter().any(|o| o.top <= track.bottom && track.top <= o.bottom))
+        {
             lane += 1;
         }
         if taken.len() <= lane {

@@ -21,11 +21,7 @@ pub fn layout(graph: &Graph, options: &Options) -> Layout {
     let texts = Texts::of(graph, options);
     let stack = Stack::new(graph, &texts);
     let columns = Columns::fit(&stack, &texts, options.max_width.map(usize::from));
-    let spine = Spine {
-        texts,
-        stack,
-        columns,
-    };
+    let spine = Spine { texts, stack, columns };
     spine.layout()
 }
 
@@ -85,10 +81,7 @@ impl Spine {
         Block {
             rect: rect(x, level.top, width, level.height),
             mark: (mark > 0).then(|| point(name_x + name_width + mark - 1, level.name)),
-            name: Words {
-                at: point(name_x, level.name),
-                text,
-            },
+            name: Words { at: point(name_x, level.name), text },
             inside: self.texts.has_room(node).then_some(room),
         }
     }
@@ -116,11 +109,7 @@ impl Spine {
             },
             text,
         });
-        Route {
-            points: vec![point(x, row)],
-            label,
-            head,
-        }
+        Route { points: vec![point(x, row)], label, head }
     }
 
     /// Out to the edge's lane, along it and back to the boxes.

@@ -48,11 +48,7 @@ impl Stack {
         }
         let height = levels.last().map_or(0, |level| level.below());
         let runs = runs(graph, &levels, &ends);
-        Stack {
-            levels,
-            runs,
-            height,
-        }
+        Stack { levels, runs, height }
     }
 }
 
@@ -61,17 +57,11 @@ fn runs(graph: &Graph, levels: &[Level], ends: &Ends) -> Vec<Run> {
     for (level, gap) in levels.iter().zip(&ends.gaps) {
         if let Some(edge) = gap.down {
             let row = level.below();
-            runs[edge] = Run::Gap {
-                side: Side::Right,
-                row,
-            };
+            runs[edge] = Run::Gap { side: Side::Right, row };
         }
         if let Some(edge) = gap.up {
             let row = level.below();
-            runs[edge] = Run::Gap {
-                side: Side::Left,
-                row,
-            };
+            runs[edge] = Run::Gap { side: Side::Left, row };
         }
     }
     for (side, ends) in [(Side::Left, &ends.left), (Side::Right, &ends.right)] {
@@ -92,15 +82,7 @@ fn joined(run: Run, side: Side, flow: Flow, row: usize) -> Run {
         _ => (row, row),
     };
     match flow {
-        Flow::Out => Run::Beside {
-            side,
-            from: row,
-            to,
-        },
-        Flow::In => Run::Beside {
-            side,
-            from,
-            to: row,
-        },
+        Flow::Out => Run::Beside { side, from: row, to },
+        Flow::In => Run::Beside { side, from, to: row },
     }
 }
