@@ -18,7 +18,7 @@ use crossterm::event::{KeyEvent, KeyEventKind};
 use ratatui::layout::{Rect, Size};
 
 pub use movement::top_for;
-pub use reading::{Filter, LogRow, Reading};
+pub use reading::{Filter, LogRow, Reading, Shown};
 pub use typing::{Text, Typing};
 
 use self::follow::Follow;

@@ -55,6 +55,13 @@ pub fn wrap(text: &str, room: u16) -> Vec<String> {
     lines
 }
 
+/// A text cut between words into what fits `room` columns and the rest.
+pub fn split(text: &str, room: u16) -> (String, String) {
+    let mut lines = wrap(&text.replace(|c: char| c.is_control(), " "), room).into_iter();
+    let first = lines.next().unwrap_or_default();
+    (first, lines.collect::<Vec<_>>().join(" "))
+}
+
 /// A word, cut where it is longer than a line.
 fn pieces(word: &str, room: u16) -> Vec<String> {
     let mut pieces = vec![String::new()];

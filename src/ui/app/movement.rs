@@ -209,7 +209,7 @@ impl App {
     }
 
     /// Columns a pane has.
-    fn columns(&self, pane: Pane) -> u16 {
+    pub(super) fn columns(&self, pane: Pane) -> u16 {
         let area = self.layout(self.area()).and_then(|layout| layout.area(pane));
         area.map_or(0, |area| area.width)
     }

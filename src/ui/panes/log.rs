@@ -5,57 +5,121 @@ use ratatui::layout::Rect;
 
 use super::{Title, draw_nothing};
 use crate::runtime::record::Level;
-use crate::ui::app::{App, LogRow};
+use crate::ui::app::{App, Filter, LogRow, Shown};
 use crate::ui::format;
 use crate::ui::layout::Pane;
 use crate::ui::pen::Pen;
-use crate::ui::view::{Entry, Gravity, Kind, Problem, name};
+use crate::ui::view::{Entry, Gravity, Kind, Problem, ProblemKey, name};
+
+/// Columns from which on times and words stand where signs would do.
+const WIDE: u16 = 60;
 
 pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
-    let window = app.reading().window(app.view(), usize::from(area.height));
-    if window.rows.is_empty() {
-        draw_nothing(app, area, buffer, "Nothing happened yet.");
+    let shown = app.reading().window(app.view(), usize::from(area.height), |key| is_long(app, key, area.width));
+    if shown.is_empty() {
+        draw_nothing(app, area, buffer, nothing(app));
     }
-    for (y, row) in (0..area.height).zip(&window.rows) {
-        let mut pen = Pen::new(buffer, area, y);
-        let held = app.reading().place.as_ref() == Some(row);
-        pen.put(if held { "▸" } else { " " }, app.theme().bold());
+    let mut y = 0;
+    for Shown { row, lines } in &shown {
+        let place = Rect { y: area.y + y, height: *lines, ..area }.intersection(area);
         match row {
             LogRow::Problem(key) => {
                 let problem = app.view().problems.iter().find(|problem| problem.key == *key);
-                problem.into_iter().for_each(|problem| draw_problem(app, problem, &mut pen));
+                problem.into_iter().for_each(|problem| draw_problem(app, problem, place, buffer));
             }
             LogRow::Entry(number) => {
-                app.view().journal.get(*number).into_iter().for_each(|entry| draw_entry(app, entry, &mut pen));
+                let entry = app.view().journal.get(*number);
+                entry.into_iter().for_each(|entry| draw_entry(app, entry, place, buffer));
             }
         }
-        if held && app.focus() == Pane::Log {
-            pen.wash(app.theme().selected());
+        if app.reading().place.as_ref() == Some(row) {
+            draw_place(app, place, buffer);
         }
+        y += lines;
     }
     Title::new(title(app), note(app))
 }
 
-fn draw_problem(app: &App, problem: &Problem, pen: &mut Pen) {
-    let theme = app.theme();
-    let time = if problem.count > 0 { format::clock(problem.last) } else { String::new() };
-    draw_time(app, &time, pen);
-    pen.right_column(&line(problem.key.line), 5, theme.dim());
-    if problem.count > 1 {
-        pen.put_right(&format!(" ×{}", problem.count), theme.normal());
+fn nothing(app: &App) -> &'static str {
+    match app.reading().filter {
+        Filter::Everything => "Nothing happened yet.",
+        Filter::WithoutChanges => "Nothing but transitions (v shows all).",
+        Filter::Warnings => "No warnings or errors (v shows all).",
     }
-    pen.put(word(problem.gravity), theme.gravity(problem.gravity)).put("  ", theme.normal());
-    if !problem.state.is_empty() {
-        pen.put(name(&problem.state), theme.normal()).put(": ", theme.normal());
-    }
-    pen.put(&problem.message, theme.normal());
 }
 
-fn draw_entry(app: &App, entry: &Entry, pen: &mut Pen) {
+/// Marks the row a reader is at.
+fn draw_place(app: &App, place: Rect, buffer: &mut Buffer) {
+    Pen::new(buffer, place, 0).put("▸", app.theme().bold());
+    if app.focus() == Pane::Log {
+        (0..place.height).for_each(|y| _ = Pen::new(buffer, place, y).wash(app.theme().selected()));
+    }
+}
+
+/// A problem cut into what its first line holds and what is left for a second.
+struct Words {
+    time: String,
+    place: String,
+    count: String,
+    mark: &'static str,
+    first: String,
+    rest: String,
+}
+
+impl Words {
+    fn of(app: &App, problem: &Problem, columns: u16) -> Words {
+        let wide = columns >= WIDE;
+        let time = if problem.count > 0 { format::clock(problem.last) } else { String::new() };
+        let (file, number) = (&*problem.key.file, problem.key.line);
+        let (place, before) = match app.view().is_program(file) {
+            true => (line(number), name(&problem.state)),
+            false => (line(number), format::file_name(file)),
+        };
+        let before = if before.is_empty() { String::new() } else { format!("{before}: ") };
+        let count = if problem.count > 1 { format!(" ×{}", problem.count) } else { String::new() };
+        let mark = if wide { word(problem.gravity) } else { sign(problem.gravity) };
+        let taken = 1 + if wide { 8 + format::width(mark) + 2 } else { 2 };
+        let room = columns.saturating_sub(taken + format::width(&count) + 5);
+        let (first, mut rest) = format::split(&format!("{before}{}", problem.message), room);
+        if let Some(help) = &problem.help {
+            rest += if rest.is_empty() { "" } else { "; " };
+            rest += help;
+        }
+        let time = if wide { format!("{time:>6}  ") } else { String::new() };
+        Words { time, place, count, mark, first, rest }
+    }
+}
+
+/// Whether a problem has more to say than a line of a pane holds.
+pub fn is_long(app: &App, key: &ProblemKey, columns: u16) -> bool {
+    let problem = app.view().problems.iter().find(|problem| problem.key == *key);
+    problem.is_some_and(|problem| !Words::of(app, problem, columns).rest.is_empty())
+}
+
+fn draw_problem(app: &App, problem: &Problem, place: Rect, buffer: &mut Buffer) {
     let theme = app.theme();
-    draw_time(app, &format::clock(entry.t), pen);
+    let words = Words::of(app, problem, place.width);
+    let mut pen = Pen::new(buffer, place, 0);
+    pen.put(" ", theme.normal()).put(&words.time, theme.dim());
+    pen.right_column(&words.place, 5, theme.dim()).put_right(&words.count, theme.normal());
+    let gap = if words.time.is_empty() { " " } else { "  " };
+    pen.put(words.mark, theme.gravity(problem.gravity)).put(gap, theme.normal());
+    let indent = pen.at() - place.x;
+    match place.height {
+        0 | 1 => pen.put(&format!("{} {}", words.first, words.rest), theme.normal()),
+        _ => pen.put(&words.first, theme.normal()),
+    };
+    let mut pen = Pen::new(buffer, place, 1);
+    pen.column("", indent, theme.normal()).put(&words.rest, theme.normal());
+}
+
+fn draw_entry(app: &App, entry: &Entry, place: Rect, buffer: &mut Buffer) {
+    let theme = app.theme();
+    let mut pen = Pen::new(buffer, place, 0);
+    pen.put(" ", theme.normal());
+    draw_time(app, &format::clock(entry.t), &mut pen);
     match entry.kind {
-        Kind::Log(level) => draw_log(app, entry, level, pen),
+        Kind::Log(level) => draw_log(app, entry, level, &mut pen),
         Kind::Change | Kind::Note => {
             pen.put(&entry.text, theme.normal());
         }
@@ -96,6 +160,14 @@ fn word(gravity: Gravity) -> &'static str {
     }
 }
 
+fn sign(gravity: Gravity) -> &'static str {
+    match gravity {
+        Gravity::Error => "✗",
+        Gravity::Warning => "!",
+        Gravity::Hint => "·",
+    }
+}
+
 fn line(number: usize) -> String {
     if number > 0 { format!(":{number}") } else { String::new() }
 }
@@ -115,9 +187,12 @@ fn title(app: &App) -> String {
 
 fn note(app: &App) -> String {
     let reading = app.reading();
-    if reading.place.is_some() {
-        let newer = app.view().journal.next().saturating_sub(reading.since);
-        return if newer > 0 { format!("held, {newer} newer: Esc") } else { "held: Esc".into() };
+    let filter = reading.filter.label();
+    if reading.place.is_none() {
+        return filter.into();
     }
-    reading.filter.label().into()
+    let newer = app.view().journal.newest_first().take_while(|entry| entry.number >= reading.since);
+    let newer = newer.filter(|entry| reading.filter.shows(entry)).count();
+    let held = if newer > 0 { format!("held, {newer} newer: Esc") } else { "held: Esc".into() };
+    if filter.is_empty() { held } else { format!("{filter}, {held}") }
 }

@@ -15,13 +15,23 @@ use crate::ui::view::{View, name};
 pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
     let rows = app.tree();
     let Some(program) = app.program().filter(|_| !rows.is_empty()) else {
-        draw_nothing(app, area, buffer, "No machine yet. Write one in your editor and save: it runs at once.");
+        draw_nothing(app, area, buffer, &nothing(app));
         return Title::new(Pane::Machines.title(), "");
     };
     for (y, row) in (0..area.height).zip(rows.iter().skip(app.tree_top())) {
         draw_row(app, program, row, Pen::new(buffer, area, y));
     }
     Title::new(Pane::Machines.title(), note(app, &rows, usize::from(area.height)))
+}
+
+fn nothing(app: &App) -> String {
+    match app.view().broken() {
+        Some(first) if app.view().is_program(&first.file) && first.line > 0 => {
+            format!("Nothing runs yet: line {}", app.view().headline(first))
+        }
+        Some(first) => format!("Nothing runs yet: {}", app.view().headline(first)),
+        None => "No machine yet. Write one in your editor and save: it runs at once.".into(),
+    }
 }
 
 /// What is out of sight: an active state above all.

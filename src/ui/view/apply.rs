@@ -53,8 +53,20 @@ impl View {
         }
         self.problems =
             load.findings.iter().map(|finding| Problem::from_finding(finding, Origin::Check, self.t)).collect();
-        self.journal.note(self.t, note_of_edit(&edit));
+        self.note_edit(&edit);
         self.edit = Some(edit);
+    }
+
+    fn note_edit(&mut self, edit: &Edit) {
+        let text = match edit {
+            Edit::Loaded => "program loaded".into(),
+            Edit::Taken { changes, restarted: None } => format!("saved: {changes}"),
+            Edit::Taken { changes, restarted: Some(reason) } => format!("saved: {changes}; restarted: {reason}"),
+            Edit::Mended => "mended: what runs is what the files say".into(),
+            Edit::Rejected { first, .. } if first.line == 0 => self.headline(first),
+            Edit::Rejected { first, .. } => format!("not taken over: {}", self.headline(first)),
+        };
+        self.journal.note(self.t, text);
     }
 
     fn take_over(&mut self, program: &Arc<Program>) {
@@ -69,7 +81,7 @@ impl View {
         let rejected = findings.iter().map(|finding| Problem::from_finding(finding, Origin::Rejected, self.t));
         self.problems.splice(0..0, rejected);
         let edit = Edit::of_reject(findings);
-        self.journal.note(self.t, note_of_edit(&edit));
+        self.note_edit(&edit);
         self.edit = Some(edit);
     }
 
@@ -251,17 +263,6 @@ impl View {
                 self.world = Some(World::new(&state.bridge, text));
             }
         }
-    }
-}
-
-fn note_of_edit(edit: &Edit) -> String {
-    match edit {
-        Edit::Loaded => "program loaded".into(),
-        Edit::Taken { changes, restarted: None } => format!("saved: {changes}"),
-        Edit::Taken { changes, restarted: Some(reason) } => format!("saved: {changes}; restarted: {reason}"),
-        Edit::Mended => "mended: what runs is what the files say".into(),
-        Edit::Rejected { first, .. } if first.line == 0 => format!("{}: {}", first.file, first.message),
-        Edit::Rejected { first, .. } => format!("not taken over: line {}: {}", first.line, first.message),
     }
 }
 
