@@ -80,6 +80,8 @@ pub struct App {
     subject: Pane,
     /// The machine or state a person is at.
     selected: Option<Path>,
+    /// Whether that is only for want of anything that runs.
+    provisional: bool,
     folded: BTreeSet<Path>,
     /// The variable or field a person is at.
     value: Option<Path>,
@@ -128,6 +130,7 @@ impl App {
             extent: Extent::Shared,
             subject: Pane::Machines,
             selected: None,
+            provisional: true,
             folded: BTreeSet::new(),
             value: None,
             reading: Reading::default(),
@@ -152,6 +155,7 @@ impl App {
         self.view.apply(record);
         match &record.what {
             What::Load(_) => self.program_changed(before),
+            What::Spawn { machine, by: None } if self.provisional => self.first_runs(machine),
             What::Enter { state } => self.entered(record.step, state),
             What::Set { var, .. } if self.nudged.as_ref().is_some_and(|(path, _)| path == var) => self.nudged = None,
             What::Resume => self.halted = false,
@@ -290,7 +294,8 @@ impl App {
 
     fn wish(&self) -> Wish {
         let simulated = if self.view.world.is_some() { Simulated::World } else { Simulated::Nothing };
-        Wish { focus: self.focus, figure: self.figure, extent: self.extent, simulated }
+        let tree = self.program().map_or(0, |program| program.machines.len() + program.states.len());
+        Wish { focus: self.focus, figure: self.figure, extent: self.extent, simulated, tree }
     }
 
     /// The drawing of a machine for an area: kept from the last frame where nothing changed.
@@ -317,6 +322,14 @@ impl App {
         self.selected = kept.or_else(first);
         self.folded.retain(|path| tree::element(&now, path).is_some());
         self.settle();
+    }
+
+    /// What runs is looked at first, until a person selects something else.
+    fn first_runs(&mut self, machine: &Path) {
+        if self.program().is_some_and(|program| program.machine(machine).is_some()) {
+            self.select(machine.clone());
+            self.settle();
+        }
     }
 
     fn key(&mut self, event: KeyEvent) -> Vec<Effect> {

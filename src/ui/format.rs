@@ -205,25 +205,46 @@ fn field(key: &str) -> String {
     if named && !key.is_empty() { key.into() } else { format!("[{key:?}]") }
 }
 
-/// What a message says, field by field: `angular.z -0.8`; fields that are zero, false or empty are left out.
+/// Messages with more fields than this are told without those that are zero, false or empty.
+const FEW: usize = 4;
+
+/// What a message says, field by field, always in the same order: `x 3.50  y 1.62  theta 0.00`, `angular.z -0.80`.
 pub fn message(message: &Value) -> String {
-    let mut said = Vec::new();
-    collect("", message, &mut said);
-    if said.is_empty() { "–".into() } else { said.join("  ") }
+    let mut fields = Vec::new();
+    collect("", message, &mut fields);
+    if fields.len() > FEW {
+        fields.retain(|(_, item)| !is_silent(item));
+    }
+    let word =
+        |(path, item): &(String, &Value)| if path.is_empty() { short(item) } else { format!("{path} {}", short(item)) };
+    if fields.is_empty() { "0".into() } else { fields.iter().map(word).collect::<Vec<_>>().join("  ") }
 }
 
-fn collect(path: &str, item: &Value, said: &mut Vec<String>) {
+fn collect<'a>(path: &str, item: &'a Value, found: &mut Vec<(String, &'a Value)>) {
     match item {
         Value::Object(fields) if marker(item).is_none() => {
+            let mut fields: Vec<_> = fields.iter().collect();
+            fields.sort_by_key(|(field, _)| rank(field));
             for (field, item) in fields {
                 let path = if path.is_empty() { field.clone() } else { format!("{path}.{field}") };
-                collect(&path, item, said);
+                collect(&path, item, found);
             }
         }
-        _ if is_silent(item) => (),
-        _ if path.is_empty() => said.push(value(item)),
-        _ => said.push(format!("{path} {}", value(item))),
+        _ => found.push((path.into(), item)),
     }
+}
+
+/// Where a field stands that has a place of its own among others; those without follow by name.
+fn rank(field: &str) -> usize {
+    const ORDER: [&str; 8] = ["linear", "angular", "x", "y", "z", "w", "theta", "data"];
+    ORDER.iter().position(|&known| known == field).unwrap_or(ORDER.len())
+}
+
+/// A value with two decimals, so that it keeps its width while it changes.
+fn short(item: &Value) -> String {
+    lua(item, &|n| {
+        n.as_f64().filter(|n_| n.is_f64() && n_.abs() < 1e6).map_or_else(|| n.to_string(), |n| format!("{n:.2}"))
+    })
 }
 
 fn is_silent(value: &Value) -> bool {

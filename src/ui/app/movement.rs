@@ -104,6 +104,7 @@ impl App {
     pub(super) fn select(&mut self, path: Path) {
         self.folded.retain(|folded| !within(&path, folded) || *folded == path);
         self.selected = Some(path);
+        self.provisional = false;
         self.detail_top = 0;
     }
 

@@ -56,7 +56,7 @@ impl Filter {
     pub fn shows(self, entry: &Entry) -> bool {
         match self {
             Filter::Everything => true,
-            Filter::WithoutChanges => entry.kind != Kind::Change,
+            Filter::WithoutChanges => !matches!(entry.kind, Kind::Change(_)),
             Filter::Warnings => matches!(entry.kind, Kind::Log(Level::Warn | Level::Error)),
         }
     }

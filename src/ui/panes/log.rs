@@ -9,7 +9,7 @@ use crate::ui::app::{App, Filter, LogRow, Shown};
 use crate::ui::format;
 use crate::ui::layout::Pane;
 use crate::ui::pen::Pen;
-use crate::ui::view::{Entry, Gravity, Kind, Problem, ProblemKey, name};
+use crate::ui::view::{Cause, Entry, Gravity, Kind, Problem, ProblemKey, name};
 
 /// Columns from which on times and words stand where signs would do.
 const WIDE: u16 = 60;
@@ -118,10 +118,27 @@ fn draw_entry(app: &App, entry: &Entry, place: Rect, buffer: &mut Buffer) {
     let mut pen = Pen::new(buffer, place, 0);
     pen.put(" ", theme.normal());
     draw_time(app, &format::clock(entry.t), &mut pen);
-    match entry.kind {
-        Kind::Log(level) => draw_log(app, entry, level, &mut pen),
-        Kind::Change | Kind::Note => {
-            pen.put(&entry.text, theme.normal());
+    match &entry.kind {
+        Kind::Log(level) => draw_log(app, entry, *level, &mut pen),
+        Kind::Change(cause) => draw_change(app, entry, cause, &mut pen),
+        Kind::Hand(_) | Kind::Note => _ = pen.put(&entry.text, theme.normal()),
+    }
+}
+
+/// The line and the transition's name where there is room for them whole.
+fn draw_change(app: &App, entry: &Entry, cause: &Cause, pen: &mut Pen) {
+    let theme = app.theme();
+    let text = format::width(&entry.text);
+    if let Some((_, number)) = &entry.place
+        && pen.room() >= text + 5
+    {
+        pen.right_column(&line(*number), 5, theme.dim());
+    }
+    pen.put(&entry.text, theme.normal());
+    if let Some(name) = &cause.name {
+        let name = format!("  ({name})");
+        if pen.room() >= format::width(&name) {
+            pen.put(&name, theme.dim());
         }
     }
 }

@@ -95,32 +95,36 @@ fn draw_state(app: &App, program: &Program, id: StateId, pen: &mut Pen) {
     draw_mark(app, &state.path, pen);
 }
 
-/// From the right: visits, the time in the state or until its timeout, and that as a bar.
+/// From the right: visits, the time in the state or until its timeout, and that as a bar; less where the name needs it.
 fn draw_numbers(app: &App, program: &Program, id: StateId, pen: &mut Pen) {
     let (theme, view) = (app.theme(), app.view());
     let state = &program[id];
     let width = pen.room();
-    if width >= 22 {
+    let time = time(view, program, id);
+    let needed = format::width(&state.name) + 4 + if time.is_empty() { 0 } else { TIME };
+    if width >= needed + 6 {
         let visits = view.states.get(&state.path).map_or(0, |state| state.visits);
         let visits = if visits == 0 { String::new() } else { format!("×{}", count(visits)) };
         pen.right_column(&visits, 6, theme.dim());
     }
-    if width < 16 {
-        return;
+    if width >= needed {
+        pen.right_column(&time, TIME, theme.normal());
     }
     let timeout = view.timeout(program, id);
-    pen.right_column(&time(view, program, id), 8, theme.normal());
-    if width >= 31 {
+    if width >= 36 {
         let bar = timeout.map_or(String::new(), |timeout| format::bar(timeout, 5));
         pen.right_column(&bar, 6, theme.active());
     }
 }
 
-/// `120 ms` until a timeout, with its bar, or else how long the state has been active.
+/// Columns of a time.
+const TIME: u16 = 11;
+
+/// `in 120 ms` until a timeout, or else how long the state has been active.
 fn time(view: &View, program: &Program, id: StateId) -> String {
     match view.timeout(program, id).map(|timeout| timeout.left()) {
         Some(left) if left < 0.5 => return "due".into(),
-        Some(left) => return format::duration(left),
+        Some(left) => return format!("in {}", format::duration(left)),
         None => (),
     }
     let state = &program[id];

@@ -159,6 +159,7 @@ fn edit_words(app: &App, edit: &Edit) -> (String, Style) {
         Edit::Loaded => (String::new(), theme.dim()),
         Edit::Taken { changes, restarted: None } => (format!("saved: {changes}"), theme.normal()),
         Edit::Taken { changes, restarted: Some(_) } => (format!("restarted: {changes}"), theme.bold()),
+        Edit::Restarted => ("restarted".into(), theme.normal()),
         Edit::Mended => ("mended".into(), theme.normal()),
         Edit::Rejected { first, .. } => (app.view().headline(first), theme.stop()),
     }

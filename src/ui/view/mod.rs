@@ -16,7 +16,7 @@ use std::sync::Arc;
 
 pub use bridge::{Bridge, Message};
 pub use edit::Edit;
-pub use journal::{Entry, Journal, Kind};
+pub use journal::{Cause, Entry, Journal, Kind};
 pub use machine::{Machine, State, Timeout, Which};
 pub use mode::{Mode, is_own_doing};
 pub use problem::{Gravity, Origin, Problem, ProblemKey};
