@@ -94,6 +94,8 @@ pub struct App {
     halted: bool,
     /// A number on its way to the engine, so that quick nudges add up.
     nudged: Option<(Path, serde_json::Value)>,
+    /// A value that was typed and is on its way to the engine, which may refuse it.
+    sent: Option<Typing>,
     /// First rows shown.
     tree_top: usize,
     values_top: usize,
@@ -139,6 +141,7 @@ impl App {
             message: None,
             halted: false,
             nudged: None,
+            sent: None,
             tree_top: 0,
             values_top: 0,
             detail_top: 0,
@@ -153,13 +156,23 @@ impl App {
             _ => None,
         };
         self.view.apply(record);
+        if let What::Set { var, by, .. } = &record.what
+            && **by == *"command"
+            && self.sent.as_ref().is_some_and(|typing| typing.var == *var)
+        {
+            self.sent = None;
+        }
         match &record.what {
             What::Load(_) => self.program_changed(before),
             What::Spawn { machine, by: None } if self.provisional => self.first_runs(machine),
             What::Enter { state } => self.entered(record.step, state),
             What::Set { var, .. } if self.nudged.as_ref().is_some_and(|(path, _)| path == var) => self.nudged = None,
             What::Resume => self.halted = false,
-            What::Log(log) if is_refusal(log) => self.message = Some(log.message.clone()),
+            What::Log(log) if is_refusal(log) => {
+                self.message = Some(log.message.clone());
+                self.nudged = None;
+                self.type_again();
+            }
             _ => (),
         }
         self.dirty = true;

@@ -242,9 +242,12 @@ fn rank(field: &str) -> usize {
 
 /// A value with two decimals, so that it keeps its width while it changes.
 fn short(item: &Value) -> String {
-    lua(item, &|n| {
-        n.as_f64().filter(|n_| n.is_f64() && n_.abs() < 1e6).map_or_else(|| n.to_string(), |n| format!("{n:.2}"))
-    })
+    let number = |n: &serde_json::Number| match n.as_f64() {
+        // Adding zero makes nothing of a negative one.
+        Some(number) if n.is_f64() && number.abs() < 1e6 => format!("{:.2}", (number * 100.0).round() / 100.0 + 0.0),
+        _ => n.to_string(),
+    };
+    lua(item, &number)
 }
 
 fn is_silent(value: &Value) -> bool {

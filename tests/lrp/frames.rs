@@ -4,7 +4,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use lrp::runtime::command::Command;
-use lrp::runtime::record::{BridgeState, Element, Finding, Health, Op, What};
+use lrp::runtime::record::{BridgeState, Element, Health, Op, What};
 use lrp::ui::app::{App, Event, Options};
 use lrp::ui::key::Key;
 use lrp::ui::theme::Theme;
@@ -118,18 +118,32 @@ fn with_a_fault() {
 #[test]
 fn with_a_rejected_edit() {
     let mut story = Story::searching();
-    story.at(81).tell(What::Reject {
-        findings: vec![Finding {
-            severity: "error".into(),
-            code: "unclosed-bracket".into(),
-            message: "this `(` is never closed".into(),
-            help: Some("add a `)` before line 16".into()),
-            file: "line_follower.lrp".into(),
-            line: 15,
-            column: 5,
-        }],
-    });
+    story.at(81).reject(&[("this `(` is never closed", "line_follower.lrp", 15)]);
     check_sizes("rejected", &story, "");
+}
+
+#[test]
+fn with_findings_of_other_files() {
+    let mut story = Story::searching();
+    let world = [("`lines` is no word of a world", "worlds/curve.world", 4), ("the file is gone", "lib/turn.lua", 0)];
+    story.at(81).reject(&world).fault("it broke", "follower/moving", 9, 1);
+    check_one("elsewhere_80x24", &story, "");
+    check("elsewhere_20x8", &screen(20, 8, &story));
+}
+
+#[test]
+fn a_program_that_is_broken_from_the_start() {
+    let mut story = Story::new();
+    story.reject(&[("this `(` is never closed", "line_follower.lrp", 15)]);
+    check_one("broken_80x24", &story, "");
+}
+
+#[test]
+fn what_is_no_longer_sent_is_not_shown() {
+    let mut story = Story::searching();
+    assert!(frame(&screen(120, 40, &story)).contains("→move  angular.z -0.80"));
+    story.at(95).set("lightlim", json!(5), "follower");
+    assert!(frame(&screen(120, 40, &story)).contains("→move  –"));
 }
 
 fn check_one(name: &str, story: &Story, keys: &str) {

@@ -199,7 +199,7 @@ impl Page<'_> {
         let latest = view.taken.iter().rev().find(|(_, taken)| taken.machine == *machine);
         if let Some((_, taken)) = latest.filter(|(t, taken)| *t == entered && name(&taken.to) == &*state.name) {
             let name = taken.name.as_ref().map_or(String::new(), |name| format!(" ({name})"));
-            self.add(Tone::Text, format!("came from {} by {}{name}", taken.from, taken.trigger));
+            self.add_wrapped(Tone::Text, &format!("came from {} by {}{name}", taken.from, taken.trigger));
         }
     }
 

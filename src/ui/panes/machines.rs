@@ -95,30 +95,32 @@ fn draw_state(app: &App, program: &Program, id: StateId, pen: &mut Pen) {
     draw_mark(app, &state.path, pen);
 }
 
-/// From the right: visits, the time in the state or until its timeout, and that as a bar; less where the name needs it.
+/// From the right: visits, the time in the state or until its timeout, and that as a bar; as far as the name leaves room.
 fn draw_numbers(app: &App, program: &Program, id: StateId, pen: &mut Pen) {
     let (theme, view) = (app.theme(), app.view());
     let state = &program[id];
-    let width = pen.room();
+    let visits = view.states.get(&state.path).map_or(0, |state| state.visits);
+    let visits = if visits == 0 { String::new() } else { format!("×{}", count(visits)) };
     let time = time(view, program, id);
-    let needed = format::width(&state.name) + 4 + if time.is_empty() { 0 } else { TIME };
-    if width >= needed + 6 {
-        let visits = view.states.get(&state.path).map_or(0, |state| state.visits);
-        let visits = if visits == 0 { String::new() } else { format!("×{}", count(visits)) };
-        pen.right_column(&visits, 6, theme.dim());
+    let spare = |pen: &Pen| pen.room().saturating_sub(format::width(&state.name) + 2);
+    let times = if time.is_empty() { 0 } else { TIME };
+    if spare(pen) >= times + VISITS {
+        pen.right_column(&visits, VISITS, theme.dim());
     }
-    if width >= needed {
-        pen.right_column(&time, TIME, theme.normal());
+    if time.is_empty() || spare(pen) < 8 {
+        return;
     }
-    let timeout = view.timeout(program, id);
-    if width >= 36 {
-        let bar = timeout.map_or(String::new(), |timeout| format::bar(timeout, 5));
-        pen.right_column(&bar, 6, theme.active());
+    pen.right_column(&time, TIME, theme.normal());
+    if let Some(timeout) = view.timeout(program, id).filter(|_| spare(pen) >= BAR) {
+        pen.right_column(&format::bar(timeout, BAR - 1), BAR, theme.active());
     }
 }
 
+/// Columns of a bar and what parts it from the name.
+const BAR: u16 = 6;
+const VISITS: u16 = 5;
 /// Columns of a time.
-const TIME: u16 = 11;
+const TIME: u16 = 10;
 
 /// `in 120 ms` until a timeout, or else how long the state has been active.
 fn time(view: &View, program: &Program, id: StateId) -> String {
