@@ -11,8 +11,10 @@ use crate::ui::layout::Pane;
 use crate::ui::pen::Pen;
 use crate::ui::view::{Cause, Entry, Gravity, Kind, Problem, ProblemKey, name};
 
-/// Columns from which on times and words stand where signs would do.
+/// Columns from which on times and words stand with problems, where signs would do.
 const WIDE: u16 = 60;
+/// The same for all else.
+const TIMED: u16 = 31;
 
 pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
     let shown = app.reading().window(app.view(), usize::from(area.height), |key| is_long(app, key, area.width));
@@ -56,12 +58,13 @@ fn draw_place(app: &App, place: Rect, buffer: &mut Buffer) {
     }
 }
 
-/// A problem cut into what its first line holds and what is left for a second.
+/// A problem in one line, and cut into what a first line holds and what is left for a second.
 struct Words {
     time: String,
     place: String,
     count: String,
     mark: &'static str,
+    whole: String,
     first: String,
     rest: String,
 }
@@ -80,13 +83,15 @@ impl Words {
         let mark = if wide { word(problem.gravity) } else { sign(problem.gravity) };
         let taken = 1 + if wide { 8 + format::width(mark) + 2 } else { 2 };
         let room = columns.saturating_sub(taken + format::width(&count) + 5);
-        let (first, mut rest) = format::split(&format!("{before}{}", problem.message), room);
+        let mut whole = format!("{before}{}", problem.message);
+        let (first, mut rest) = format::split(&whole, room);
         if let Some(help) = &problem.help {
             rest += if rest.is_empty() { "" } else { "; " };
             rest += help;
+            whole = format!("{whole}; {help}");
         }
         let time = if wide { format!("{time:>6}  ") } else { String::new() };
-        Words { time, place, count, mark, first, rest }
+        Words { time, place, count, mark, whole, first, rest }
     }
 }
 
@@ -106,7 +111,7 @@ fn draw_problem(app: &App, problem: &Problem, place: Rect, buffer: &mut Buffer) 
     pen.put(words.mark, theme.gravity(problem.gravity)).put(gap, theme.normal());
     let indent = pen.at() - place.x;
     match place.height {
-        0 | 1 => pen.put(&format!("{} {}", words.first, words.rest), theme.normal()),
+        0 | 1 => pen.put(&words.whole, theme.normal()),
         _ => pen.put(&words.first, theme.normal()),
     };
     let mut pen = Pen::new(buffer, place, 1);
@@ -119,7 +124,7 @@ fn draw_entry(app: &App, entry: &Entry, place: Rect, buffer: &mut Buffer) {
     pen.put(" ", theme.normal());
     draw_time(app, &format::clock(entry.t), &mut pen);
     match &entry.kind {
-        Kind::Log(level) => draw_log(app, entry, *level, &mut pen),
+        Kind::Log(level) => draw_log(app, entry, *level, place.width, &mut pen),
         Kind::Change(cause) => draw_change(app, entry, cause, &mut pen),
         Kind::Hand(_) | Kind::Note => _ = pen.put(&entry.text, theme.normal()),
     }
@@ -143,19 +148,20 @@ fn draw_change(app: &App, entry: &Entry, cause: &Cause, pen: &mut Pen) {
     }
 }
 
-fn draw_log(app: &App, entry: &Entry, level: Level, pen: &mut Pen) {
+fn draw_log(app: &App, entry: &Entry, level: Level, columns: u16, pen: &mut Pen) {
     let theme = app.theme();
     let at = entry.place.as_ref().map_or(String::new(), |(_, number)| line(*number));
     if !at.is_empty() {
         pen.right_column(&at, 5, theme.dim());
     }
-    let (word, text) = match level {
-        Level::Error => ("error", theme.normal()),
-        Level::Warn => ("warn", theme.normal()),
-        Level::Info => ("info", theme.normal()),
-        Level::Debug => ("debug", theme.dim()),
+    let (word, sign) = match level {
+        Level::Error => ("error  ", "✗ "),
+        Level::Warn => ("warn  ", "! "),
+        Level::Info => ("info  ", "· "),
+        Level::Debug => ("debug  ", "· "),
     };
-    pen.put(word, theme.level(level)).put("  ", theme.normal());
+    let text = if level == Level::Debug { theme.dim() } else { theme.normal() };
+    pen.put(if columns < TIMED { sign } else { word }, theme.level(level));
     if !entry.state.is_empty() {
         pen.put(name(&entry.state), text).put(": ", text);
     }
@@ -164,7 +170,7 @@ fn draw_log(app: &App, entry: &Entry, level: Level, pen: &mut Pen) {
 
 /// Left out where the words need the room.
 fn draw_time(app: &App, time: &str, pen: &mut Pen) {
-    if pen.room() >= 30 {
+    if pen.room() >= TIMED - 1 {
         pen.column_right(time, 6, app.theme().dim()).put("  ", app.theme().dim());
     }
 }

@@ -147,9 +147,18 @@ fn draw_bridges(app: &App, room: Room, pen: &mut Pen) {
     }
 }
 
+/// In fewer columns a message says nothing.
+const SENTENCE: u16 = 16;
+
 fn draw_edit(app: &App, pen: &mut Pen) {
     let Some(edit) = &app.view().edit else { return };
-    let (text, style) = edit_words(app, edit);
+    let (mut text, style) = edit_words(app, edit);
+    if let Edit::Rejected { first, .. } = edit
+        && pen.room() < SENTENCE
+        && first.line > 0
+    {
+        text = format!("line {}", first.line);
+    }
     pen.put_right(" ", style).put_right(&text, style).put_right("  ", Style::new());
 }
 
