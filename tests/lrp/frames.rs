@@ -146,6 +146,28 @@ fn what_is_no_longer_sent_is_not_shown() {
     assert!(frame(&screen(120, 40, &story)).contains("→move  –"));
 }
 
+#[test]
+fn a_transition_tells_what_its_condition_saw() {
+    let mut story = Story::searching();
+    story.at(90).input("light", json!({ "data": 90 }));
+    story.take("follower", "follower/looking", "follower/moving", Some("tmoving"), "intheline", 1);
+    check_one("why_80x24", &story, "4 Down i");
+    check_one("came_from_80x24", &story, "Down i");
+}
+
+#[test]
+fn of_several_sources_the_one_left_is_heavy() {
+    let text = "(machine m (state a) (state b) (state d) (state c) (on go (a b) -> c) (event go [true])) (spawn m a)";
+    let heavy = |from: &str| {
+        let mut story = Story::new();
+        story.load(&program(text), &[]).spawn("m", None).enter(from).take("m", from, "m/c", None, "go", 0);
+        frame(&screen(80, 24, &story)).chars().filter(|c| "━┃┏┓┗┛".contains(*c)).count()
+    };
+    assert!(heavy("m/a") > 0 && heavy("m/b") > 0);
+    assert_ne!(heavy("m/a"), heavy("m/b"), "the lines differ in length");
+    assert_eq!(heavy("m/c"), 0, "it doesn't lead out of c");
+}
+
 fn check_one(name: &str, story: &Story, keys: &str) {
     let mut app = screen(80, 24, story);
     press(&mut app, keys);

@@ -217,6 +217,20 @@ fn the_selection_survives_edits() {
 }
 
 #[test]
+fn the_first_machine_that_runs_is_selected_until_a_person_selects() {
+    let text = "(machine idle (state a)) (machine busy (state b)) (machine late (state c)) (spawn busy b)";
+    let mut story = Story::new();
+    story.load(&program(text), &[]).spawn("busy", None).enter("busy/b");
+    let mut app = screen(80, 24, &story);
+    assert_eq!(app.selected().map(|path| &**path), Some("busy"));
+    press(&mut app, "Up");
+    let mut story = Story::new();
+    story.spawn("late", None);
+    story.records.iter().for_each(|record| app.record(record));
+    assert_eq!(app.selected().map(|path| &**path), Some("idle/a"));
+}
+
+#[test]
 fn following_goes_to_the_innermost_change() {
     let mut app = searching();
     press(&mut app, "f");

@@ -302,6 +302,7 @@ impl Page<'_> {
             Trigger::UnknownEvent(_) => (),
             _ => self.add(Tone::Heading, format!("after {} ms", trigger_text(program, trigger))),
         }
+        cause.evidence.iter().for_each(|seen| self.add(Tone::Aside, seen.clone()));
     }
 
     fn problem(&mut self, problem: &Problem) {

@@ -7,7 +7,7 @@ use serde_json::Value;
 use super::mode::is_own_doing;
 use super::problem::{Origin, Problem};
 use super::{Cause, Edit, Kind, Message, Mode, Path, TAKEN_KEPT, View, Which, World, name, owner};
-use crate::model::{Program, TransitionId};
+use crate::model::{Program, TransitionId, Trigger};
 use crate::runtime::command::Command;
 use crate::runtime::record::{BridgeState, Fault, Finding, Forced, Health, Load, Log, Record, Taken, What};
 use crate::ui::format;
@@ -141,7 +141,8 @@ impl View {
         let state = format!("{}/{}", taken.machine, name(&taken.to));
         let cause = self.transition(taken);
         let place = cause.and_then(|cause| self.place_of(cause));
-        let cause = Cause { name: taken.name.clone(), transition: cause.map(|id| (self.loads, id)) };
+        let evidence = cause.map_or_else(Vec::new, |cause| self.evidence_for(cause));
+        let cause = Cause { name: taken.name.clone(), transition: cause.map(|id| (self.loads, id)), evidence };
         self.journal.add(t, Kind::Change(cause), text, state.into(), place);
     }
 
@@ -151,6 +152,18 @@ impl View {
         let written_in = taken.via.as_ref().and_then(|via| owner(via)).unwrap_or(&taken.machine);
         let machine = &program[program.machine(written_in)?];
         machine.transitions.get(taken.index as usize).copied()
+    }
+
+    /// A transition's record comes before what its actions change.
+    fn evidence_for(&self, transition: TransitionId) -> Vec<String> {
+        let Some(program) = &self.program else { return Vec::new() };
+        let transition = &program[transition];
+        let block = match transition.trigger {
+            Trigger::Event(event) => program[event].block,
+            Trigger::Block(block) => block,
+            _ => return Vec::new(),
+        };
+        self.evidence(program, transition.machine, &program[block].code)
     }
 
     fn place_of(&self, transition: TransitionId) -> Option<(Path, usize)> {

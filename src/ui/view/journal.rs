@@ -46,6 +46,8 @@ pub struct Cause {
     pub name: Option<Path>,
     /// In the program of this many loads.
     pub transition: Option<(u64, TransitionId)>,
+    /// What its condition saw: `robot.light.data 142`.
+    pub evidence: Vec<String>,
 }
 
 /// A variable that is set again and again keeps one entry for it.

@@ -4,6 +4,7 @@
 mod apply;
 mod bridge;
 mod edit;
+mod evidence;
 mod journal;
 mod machine;
 mod mode;
