@@ -82,7 +82,9 @@ impl Words {
         let count = if problem.count > 1 { format!(" ×{}", problem.count) } else { String::new() };
         let mark = if wide { word(problem.gravity) } else { sign(problem.gravity) };
         let taken = 1 + if wide { 8 + format::width(mark) + 2 } else { 2 };
-        let room = columns.saturating_sub(taken + format::width(&count) + 5);
+        // A fault that goes on is counted up without its words moving.
+        let counted = if problem.count > 0 { format::width(&count).max(5) } else { 0 };
+        let room = columns.saturating_sub(taken + counted + 5);
         let mut whole = format!("{before}{}", problem.message);
         let (first, mut rest) = format::split(&whole, room);
         if let Some(help) = &problem.help {
