@@ -18,7 +18,7 @@ use crossterm::event::{KeyEvent, KeyEventKind};
 use ratatui::layout::{Rect, Size};
 
 pub use movement::top_for;
-pub use reading::{Filter, LogRow, Reading};
+pub use reading::{Filter, LogRow, Reading, Shown};
 pub use typing::{Text, Typing};
 
 use self::follow::Follow;
@@ -80,6 +80,8 @@ pub struct App {
     subject: Pane,
     /// The machine or state a person is at.
     selected: Option<Path>,
+    /// Whether that is only for want of anything that runs.
+    provisional: bool,
     folded: BTreeSet<Path>,
     /// The variable or field a person is at.
     value: Option<Path>,
@@ -92,6 +94,8 @@ pub struct App {
     halted: bool,
     /// A number on its way to the engine, so that quick nudges add up.
     nudged: Option<(Path, serde_json::Value)>,
+    /// A value that was typed and is on its way to the engine, which may refuse it.
+    sent: Option<Typing>,
     /// First rows shown.
     tree_top: usize,
     values_top: usize,
@@ -128,6 +132,7 @@ impl App {
             extent: Extent::Shared,
             subject: Pane::Machines,
             selected: None,
+            provisional: true,
             folded: BTreeSet::new(),
             value: None,
             reading: Reading::default(),
@@ -136,6 +141,7 @@ impl App {
             message: None,
             halted: false,
             nudged: None,
+            sent: None,
             tree_top: 0,
             values_top: 0,
             detail_top: 0,
@@ -150,12 +156,23 @@ impl App {
             _ => None,
         };
         self.view.apply(record);
+        if let What::Set { var, by, .. } = &record.what
+            && **by == *"command"
+            && self.sent.as_ref().is_some_and(|typing| typing.var == *var)
+        {
+            self.sent = None;
+        }
         match &record.what {
             What::Load(_) => self.program_changed(before),
+            What::Spawn { machine, by: None } if self.provisional => self.first_runs(machine),
             What::Enter { state } => self.entered(record.step, state),
             What::Set { var, .. } if self.nudged.as_ref().is_some_and(|(path, _)| path == var) => self.nudged = None,
             What::Resume => self.halted = false,
-            What::Log(log) if is_refusal(log) => self.message = Some(log.message.clone()),
+            What::Log(log) if is_refusal(log) => {
+                self.message = Some(log.message.clone());
+                self.nudged = None;
+                self.type_again();
+            }
             _ => (),
         }
         self.dirty = true;
@@ -290,7 +307,8 @@ impl App {
 
     fn wish(&self) -> Wish {
         let simulated = if self.view.world.is_some() { Simulated::World } else { Simulated::Nothing };
-        Wish { focus: self.focus, figure: self.figure, extent: self.extent, simulated }
+        let tree = self.program().map_or(0, |program| program.machines.len() + program.states.len());
+        Wish { focus: self.focus, figure: self.figure, extent: self.extent, simulated, tree }
     }
 
     /// The drawing of a machine for an area: kept from the last frame where nothing changed.
@@ -317,6 +335,14 @@ impl App {
         self.selected = kept.or_else(first);
         self.folded.retain(|path| tree::element(&now, path).is_some());
         self.settle();
+    }
+
+    /// What runs is looked at first, until a person selects something else.
+    fn first_runs(&mut self, machine: &Path) {
+        if self.program().is_some_and(|program| program.machine(machine).is_some()) {
+            self.select(machine.clone());
+            self.settle();
+        }
     }
 
     fn key(&mut self, event: KeyEvent) -> Vec<Effect> {

@@ -55,6 +55,13 @@ pub fn wrap(text: &str, room: u16) -> Vec<String> {
     lines
 }
 
+/// A text cut between words into what fits `room` columns and the rest.
+pub fn split(text: &str, room: u16) -> (String, String) {
+    let mut lines = wrap(&text.replace(|c: char| c.is_control(), " "), room).into_iter();
+    let first = lines.next().unwrap_or_default();
+    (first, lines.collect::<Vec<_>>().join(" "))
+}
+
 /// A word, cut where it is longer than a line.
 fn pieces(word: &str, room: u16) -> Vec<String> {
     let mut pieces = vec![String::new()];
@@ -198,25 +205,49 @@ fn field(key: &str) -> String {
     if named && !key.is_empty() { key.into() } else { format!("[{key:?}]") }
 }
 
-/// What a message says, field by field: `angular.z -0.8`; fields that are zero, false or empty are left out.
+/// Messages with more fields than this are told without those that are zero, false or empty.
+const FEW: usize = 4;
+
+/// What a message says, field by field, always in the same order: `x 3.50  y 1.62  theta 0.00`, `angular.z -0.80`.
 pub fn message(message: &Value) -> String {
-    let mut said = Vec::new();
-    collect("", message, &mut said);
-    if said.is_empty() { "–".into() } else { said.join("  ") }
+    let mut fields = Vec::new();
+    collect("", message, &mut fields);
+    if fields.len() > FEW {
+        fields.retain(|(_, item)| !is_silent(item));
+    }
+    let word =
+        |(path, item): &(String, &Value)| if path.is_empty() { short(item) } else { format!("{path} {}", short(item)) };
+    if fields.is_empty() { "0".into() } else { fields.iter().map(word).collect::<Vec<_>>().join("  ") }
 }
 
-fn collect(path: &str, item: &Value, said: &mut Vec<String>) {
+fn collect<'a>(path: &str, item: &'a Value, found: &mut Vec<(String, &'a Value)>) {
     match item {
         Value::Object(fields) if marker(item).is_none() => {
+            let mut fields: Vec<_> = fields.iter().collect();
+            fields.sort_by_key(|(field, _)| rank(field));
             for (field, item) in fields {
                 let path = if path.is_empty() { field.clone() } else { format!("{path}.{field}") };
-                collect(&path, item, said);
+                collect(&path, item, found);
             }
         }
-        _ if is_silent(item) => (),
-        _ if path.is_empty() => said.push(value(item)),
-        _ => said.push(format!("{path} {}", value(item))),
+        _ => found.push((path.into(), item)),
     }
+}
+
+/// Where a field stands that has a place of its own among others; those without follow by name.
+fn rank(field: &str) -> usize {
+    const ORDER: [&str; 8] = ["linear", "angular", "x", "y", "z", "w", "theta", "data"];
+    ORDER.iter().position(|&known| known == field).unwrap_or(ORDER.len())
+}
+
+/// A value with two decimals, so that it keeps its width while it changes.
+fn short(item: &Value) -> String {
+    let number = |n: &serde_json::Number| match n.as_f64() {
+        // Adding zero makes nothing of a negative one.
+        Some(number) if n.is_f64() && number.abs() < 1e6 => format!("{:.2}", (number * 100.0).round() / 100.0 + 0.0),
+        _ => n.to_string(),
+    };
+    lua(item, &number)
 }
 
 fn is_silent(value: &Value) -> bool {

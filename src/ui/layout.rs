@@ -72,6 +72,8 @@ pub struct Wish {
     pub figure: Figure,
     pub extent: Extent,
     pub simulated: Simulated,
+    /// Rows of the machines with nothing folded; 0 where there are none yet.
+    pub tree: usize,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -110,7 +112,7 @@ impl Layout {
 
     fn share(&mut self, body: Rect, wish: Wish) {
         match (body.width, body.height) {
-            (180.., 46..) => self.everything(body),
+            (180.., 46..) => self.everything(body, wish),
             (110.., 28..) => self.two_figures(body, wish),
             (64.., 16..) => self.one_figure(body, wish),
             (64.., 7..) => self.three_columns(body, wish),
@@ -120,10 +122,10 @@ impl Layout {
     }
 
     /// 200x60
-    fn everything(&mut self, body: Rect) {
+    fn everything(&mut self, body: Rect, wish: Wish) {
         let (left, rest) = self.beside(body, 44);
         let (middle, right) = self.beside(rest, rest.width * 3 / 5);
-        self.overview(left);
+        self.overview(left, wish);
         let (graph, log) = above(middle, middle.height * 2 / 3);
         let (world, detail) = above(right, right.height / 2);
         self.place(Pane::Graph, graph);
@@ -135,7 +137,7 @@ impl Layout {
     /// 120x40
     fn two_figures(&mut self, body: Rect, wish: Wish) {
         let (left, right) = self.beside(body, 38);
-        self.overview(left);
+        self.overview(left, wish);
         let (figures, log) = above(right, right.height * 2 / 3);
         let second = match (wish.figure, wish.simulated) {
             (Figure::Detail, _) => Some(Pane::Detail),
@@ -157,7 +159,7 @@ impl Layout {
     fn one_figure(&mut self, body: Rect, wish: Wish) {
         let left = (body.width * 9 / 20).clamp(30, 38);
         let (left, right) = self.beside(body, left);
-        self.overview(left);
+        self.overview(left, wish);
         let (figure, log) = above(right, right.height - (right.height / 3).clamp(5, 14));
         self.place(wish.figure.pane(), figure);
         self.place(Pane::Log, log);
@@ -187,8 +189,11 @@ impl Layout {
         self.place(Pane::Log, log);
     }
 
-    fn overview(&mut self, column: Rect) {
-        let (machines, variables) = above(column, column.height * 6 / 11);
+    /// The variables have what the machines don't need.
+    fn overview(&mut self, column: Rect, wish: Wish) {
+        let needed = if wish.tree == 0 { usize::MAX } else { wish.tree + 2 };
+        let share = usize::from(column.height * 6 / 11);
+        let (machines, variables) = above(column, needed.min(share) as u16);
         self.place(Pane::Machines, machines);
         self.place(Pane::Variables, variables);
     }

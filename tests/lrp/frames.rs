@@ -4,7 +4,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use lrp::runtime::command::Command;
-use lrp::runtime::record::{BridgeState, Element, Finding, Health, Op, What};
+use lrp::runtime::record::{BridgeState, Element, Health, Op, What};
 use lrp::ui::app::{App, Event, Options};
 use lrp::ui::key::Key;
 use lrp::ui::theme::Theme;
@@ -118,18 +118,54 @@ fn with_a_fault() {
 #[test]
 fn with_a_rejected_edit() {
     let mut story = Story::searching();
-    story.at(81).tell(What::Reject {
-        findings: vec![Finding {
-            severity: "error".into(),
-            code: "unclosed-bracket".into(),
-            message: "this `(` is never closed".into(),
-            help: Some("add a `)` before line 16".into()),
-            file: "line_follower.lrp".into(),
-            line: 15,
-            column: 5,
-        }],
-    });
+    story.at(81).reject(&[("this `(` is never closed", "line_follower.lrp", 15)]);
     check_sizes("rejected", &story, "");
+}
+
+#[test]
+fn with_findings_of_other_files() {
+    let mut story = Story::searching();
+    let world = [("`lines` is no word of a world", "worlds/curve.world", 4), ("the file is gone", "lib/turn.lua", 0)];
+    story.at(81).reject(&world).fault("it broke", "follower/moving", 9, 1);
+    check_one("elsewhere_80x24", &story, "");
+    check("elsewhere_20x8", &screen(20, 8, &story));
+}
+
+#[test]
+fn a_program_that_is_broken_from_the_start() {
+    let mut story = Story::new();
+    story.reject(&[("this `(` is never closed", "line_follower.lrp", 15)]);
+    check_one("broken_80x24", &story, "");
+}
+
+#[test]
+fn what_is_no_longer_sent_is_not_shown() {
+    let mut story = Story::searching();
+    assert!(frame(&screen(120, 40, &story)).contains("→move  angular.z -0.80"));
+    story.at(95).set("lightlim", json!(5), "follower");
+    assert!(frame(&screen(120, 40, &story)).contains("→move  –"));
+}
+
+#[test]
+fn a_transition_tells_what_its_condition_saw() {
+    let mut story = Story::searching();
+    story.at(90).input("light", json!({ "data": 90 }));
+    story.take("follower", "follower/looking", "follower/moving", Some("tmoving"), "intheline", 1);
+    check_one("why_80x24", &story, "4 Down i");
+    check_one("came_from_80x24", &story, "Down i");
+}
+
+#[test]
+fn of_several_sources_the_one_left_is_heavy() {
+    let text = "(machine m (state a) (state b) (state d) (state c) (on go (a b) -> c) (event go [true])) (spawn m a)";
+    let heavy = |from: &str| {
+        let mut story = Story::new();
+        story.load(&program(text), &[]).spawn("m", None).enter(from).take("m", from, "m/c", None, "go", 0);
+        frame(&screen(80, 24, &story)).chars().filter(|c| "━┃┏┓┗┛".contains(*c)).count()
+    };
+    assert!(heavy("m/a") > 0 && heavy("m/b") > 0);
+    assert_ne!(heavy("m/a"), heavy("m/b"), "the lines differ in length");
+    assert_eq!(heavy("m/c"), 0, "it doesn't lead out of c");
 }
 
 fn check_one(name: &str, story: &Story, keys: &str) {

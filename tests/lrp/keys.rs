@@ -4,7 +4,7 @@ use std::fs;
 use std::path::PathBuf;
 
 use lrp::runtime::command::Command;
-use lrp::runtime::record::{Element, Op, What};
+use lrp::runtime::record::{Element, Level, Log, Op, What};
 use lrp::ui::action;
 use lrp::ui::app::{App, Effect};
 use lrp::ui::key::Key;
@@ -115,6 +115,56 @@ fn a_value_is_typed_as_lua() {
 }
 
 #[test]
+fn a_value_that_can_not_be_set_is_typed_in_vain() {
+    let mut story = Story::searching();
+    story.at(90).tell(What::Discard { machine: "follower".into() });
+    let mut app = screen(80, 24, &story);
+    assert_eq!(press(&mut app, "3 Down e q !"), Vec::new(), "letters are no commands");
+    assert_eq!(press(&mut app, "Enter"), Vec::new());
+    assert_eq!(app.message(), Some("follower/nobump has no value: its machine isn't running"));
+    assert_eq!(press(&mut app, "Esc q"), vec![Effect::Quit]);
+}
+
+#[test]
+fn a_refused_value_can_be_mended() {
+    let mut app = searching();
+    assert_eq!(press(&mut app, "3 Down Down e 1 + Enter"), set("lightlim", "1+"));
+    let mut story = Story::new();
+    story.at(83).tell(What::Log(Log {
+        level: Level::Error,
+        message: "`1+`: unexpected end".into(),
+        state: "".into(),
+        file: "".into(),
+        line: 0,
+    }));
+    story.records.iter().for_each(|record| app.record(record));
+    assert!(frame(&app).contains("lightlim = 1+") && frame(&app).contains("unexpected end"));
+    assert_eq!(press(&mut app, "2 Enter"), set("lightlim", "1+2"));
+}
+
+#[test]
+fn numbers_at_their_limits_stay() {
+    for (value, said) in
+        [(json!(i64::MAX), "is 9223372036854775807"), (json!("inf"), "is math.huge"), (json!("nan"), "0/0")]
+    {
+        let mut story = Story::searching();
+        story.set("lightlim", value, "init");
+        let mut app = screen(80, 24, &story);
+        assert_eq!(press(&mut app, "3 Down Down Right"), Vec::new());
+        assert!(app.message().is_some_and(|message| message.contains(said)), "{:?}", app.message());
+    }
+}
+
+#[test]
+fn the_log_says_what_the_filter_hides() {
+    let mut story = Story::new();
+    story.at(1).tell(What::Resume);
+    let mut app = screen(80, 24, &story);
+    press(&mut app, "4 v v");
+    assert!(frame(&app).contains("No warnings or errors (v shows all)."));
+}
+
+#[test]
 fn the_robot_is_stopped_from_anywhere() {
     for keys in ["", "?", "2", "3", "4", "5", "i", "z", "3 Down Down", "w"] {
         let mut app = searching();
@@ -164,6 +214,20 @@ fn the_selection_survives_edits() {
     assert_eq!(renamed.as_deref(), Some("follower/looking/lookalgo/backleft"));
     let gone = edit(&mut app, "(state returnleft (running [robot.move{angular = {z = -search}}]))", "");
     assert_eq!(gone.as_deref(), Some("follower/looking/lookalgo/lookright"));
+}
+
+#[test]
+fn the_first_machine_that_runs_is_selected_until_a_person_selects() {
+    let text = "(machine idle (state a)) (machine busy (state b)) (machine late (state c)) (spawn busy b)";
+    let mut story = Story::new();
+    story.load(&program(text), &[]).spawn("busy", None).enter("busy/b");
+    let mut app = screen(80, 24, &story);
+    assert_eq!(app.selected().map(|path| &**path), Some("busy"));
+    press(&mut app, "Up");
+    let mut story = Story::new();
+    story.spawn("late", None);
+    story.records.iter().for_each(|record| app.record(record));
+    assert_eq!(app.selected().map(|path| &**path), Some("idle/a"));
 }
 
 #[test]

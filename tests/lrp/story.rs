@@ -138,6 +138,20 @@ impl Story {
         }))
     }
 
+    /// A text that isn't taken over: message, file and line of each finding.
+    pub fn reject(&mut self, findings: &[(&str, &str, usize)]) -> &mut Story {
+        let finding = |&(message, file, line): &(&str, &str, usize)| Finding {
+            severity: "error".into(),
+            code: "unclosed-bracket".into(),
+            message: message.into(),
+            help: Some("add a `)` before line 16".into()),
+            file: file.into(),
+            line,
+            column: 5,
+        };
+        self.tell(What::Reject { findings: findings.iter().map(finding).collect() })
+    }
+
     pub fn output(&mut self, name: &str, value: Value) -> &mut Story {
         self.tell(What::Output { bridge: "robot".into(), name: name.into(), value })
     }

@@ -7,7 +7,7 @@ use lrp::runtime::record::*;
 use lrp::runtime::time::Time;
 use lrp::ui::app::{App, Event, Options as Screen};
 use lrp::ui::theme::Theme;
-use lrp::ui::view::{Mode, View};
+use lrp::ui::view::{Edit, Mode, View};
 use proptest::prelude::*;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Rect, Size};
@@ -88,6 +88,46 @@ fn runstop_shows_until_a_person_resumes() {
     assert_eq!(view_of(&story).mode, Mode::Stopped);
     story.tell(What::Resume);
     assert_eq!(view_of(&story).mode, Mode::Running);
+}
+
+/// The newest lines of the log, oldest first.
+fn newest(view: &View, count: usize) -> Vec<String> {
+    let mut lines: Vec<String> = view.journal.newest_first().take(count).map(|entry| entry.text.clone()).collect();
+    lines.reverse();
+    lines
+}
+
+#[test]
+fn what_a_person_does_is_in_the_log() {
+    let mut story = Story::searching();
+    story.at(90).tell(What::Pause { reason: "asked for".into() }).tell(What::Resume);
+    story.tell(What::Command { command: Command::PutAtStart { bridge: "robot".into() } });
+    story.tell(What::Pause { reason: "runstop".into() }).tell(What::Stop { reason: "runstop".into() });
+    story.tell(What::Restart { reason: "asked for".into() }).tell(What::Stop { reason: "restart".into() });
+    let view = view_of(&story);
+    let lines = ["paused", "goes on", "robot put at its start", "robot stopped: runstop", "restarted"];
+    assert_eq!(newest(&view, 5), lines);
+    assert_eq!(view.edit, Some(Edit::Restarted));
+}
+
+#[test]
+fn a_forced_state_tells_of_the_machines_on_the_way() {
+    let mut story = Story::searching();
+    story.at(90).take("follower", "follower/looking", "follower/moving", None, "intheline", 1);
+    let state = "follower/looking/lookalgo/lookright".into();
+    story.tell(What::Force { state, how: Forced::Transition });
+    assert_eq!(newest(&view_of(&story), 2), ["follower sent to looking", "lookalgo spawned in lookright"]);
+}
+
+#[test]
+fn nudging_again_and_again_is_one_line() {
+    let mut story = Story::searching();
+    for (step, value) in [(90, 138), (91, 148), (92, 158)] {
+        story.at(step).set("lightlim", json!(value), "command").log(Level::Info, "between", "", 0);
+    }
+    story.at(200).set("lightlim", json!(100), "command");
+    let lines = ["lightlim 128 → 158 (×3)", "between", "between", "between", "lightlim 158 → 100"];
+    assert_eq!(newest(&view_of(&story), 5), lines);
 }
 
 fn view_of(story: &Story) -> View {

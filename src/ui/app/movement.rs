@@ -104,6 +104,7 @@ impl App {
     pub(super) fn select(&mut self, path: Path) {
         self.folded.retain(|folded| !within(&path, folded) || *folded == path);
         self.selected = Some(path);
+        self.provisional = false;
         self.detail_top = 0;
     }
 
@@ -209,7 +210,7 @@ impl App {
     }
 
     /// Columns a pane has.
-    fn columns(&self, pane: Pane) -> u16 {
+    pub(super) fn columns(&self, pane: Pane) -> u16 {
         let area = self.layout(self.area()).and_then(|layout| layout.area(pane));
         area.map_or(0, |area| area.width)
     }

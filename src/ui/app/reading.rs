@@ -4,7 +4,11 @@ use super::App;
 use super::movement::Move;
 use crate::runtime::record::Level;
 use crate::ui::layout::Pane;
+use crate::ui::panes::log;
 use crate::ui::view::{Entry, Gravity, Kind, ProblemKey, View};
+
+/// Lines from which on a problem may take two.
+const TALL: usize = 4;
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Reading {
@@ -52,7 +56,7 @@ impl Filter {
     pub fn shows(self, entry: &Entry) -> bool {
         match self {
             Filter::Everything => true,
-            Filter::WithoutChanges => entry.kind != Kind::Change,
+            Filter::WithoutChanges => !matches!(entry.kind, Kind::Change(_)),
             Filter::Warnings => matches!(entry.kind, Kind::Log(Level::Warn | Level::Error)),
         }
     }
@@ -71,8 +75,9 @@ impl Reading {
         problems.chain(entries.map(|entry| LogRow::Entry(entry.number))).collect()
     }
 
-    /// The rows a pane of `height` shows: problems stay at the top, in half of it at most.
-    pub fn window(&self, view: &View, height: usize) -> Window {
+    /// The rows a pane of `height` shows: problems stay at the top, in half of it at most. Where there is room among
+    /// them, one that is `long` has a second line.
+    pub fn window(&self, view: &View, height: usize, long: impl Fn(&ProblemKey) -> bool) -> Vec<Shown> {
         let rows = self.rows(view);
         let problems = rows.iter().filter(|row| matches!(row, LogRow::Problem(_))).count();
         let at = self.place.as_ref().and_then(|place| rows.iter().position(|row| row == place));
@@ -81,6 +86,14 @@ impl Reading {
             Some(at) if at < problems => (at + 1).saturating_sub(pinned),
             _ => 0,
         };
+        let mut spare = if height < TALL { 0 } else { height.div_ceil(2).max(2) - pinned };
+        let mut shown: Vec<Shown> = Vec::new();
+        for row in &rows[first_problem..first_problem + pinned] {
+            let second = spare > 0 && matches!(row, LogRow::Problem(key) if long(key));
+            spare -= usize::from(second);
+            shown.push(Shown { row: row.clone(), lines: 1 + u16::from(second) });
+        }
+        let pinned: usize = shown.iter().map(|shown| usize::from(shown.lines)).sum();
         let space = height - pinned;
         let entries = rows.len() - problems;
         let first_entry = match at.and_then(|at| at.checked_sub(problems)) {
@@ -90,16 +103,17 @@ impl Reading {
             }
             None => 0,
         };
-        let shown_problems = rows[first_problem..first_problem + pinned].iter();
-        let shown_entries = rows[problems + first_entry..].iter().take(space);
-        Window { rows: shown_problems.chain(shown_entries).cloned().collect(), hidden_problems: problems - pinned }
+        let entries = rows[problems + first_entry..].iter().take(space);
+        shown.extend(entries.map(|row| Shown { row: row.clone(), lines: 1 }));
+        shown
     }
 }
 
-/// What of the log is seen.
-pub struct Window {
-    pub rows: Vec<LogRow>,
-    pub hidden_problems: usize,
+/// A row that is seen, in one or two lines.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Shown {
+    pub row: LogRow,
+    pub lines: u16,
 }
 
 impl App {
@@ -111,8 +125,10 @@ impl App {
             return self.read_newest();
         }
         let Some(to) = how.from(at, rows.len(), page) else { return };
-        let seen = self.reading.window(&self.view, page).rows;
-        let shown = seen.iter().position(|row| *row == rows[to]);
+        let columns = self.columns(Pane::Log);
+        let seen = self.reading.window(&self.view, page, |key| log::is_long(self, key, columns));
+        let shown = seen.iter().position(|shown| shown.row == rows[to]);
+        let shown = shown.map(|at| seen[..at].iter().map(|shown| usize::from(shown.lines)).sum::<usize>());
         let moved = to as isize - at.unwrap_or(0) as isize;
         let row = shown.map_or(self.reading.row as isize + moved, |row| row as isize);
         self.reading.row = row.clamp(0, page.saturating_sub(1) as isize) as usize;

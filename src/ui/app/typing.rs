@@ -4,6 +4,7 @@ use crossterm::event::{Event as TerminalEvent, KeyCode, KeyEvent, KeyModifiers};
 use tui_input::Input;
 use tui_input::backend::crossterm::EventHandler;
 
+use super::values::NOTHING_SELECTED;
 use super::{App, Effect, Overlay};
 use crate::runtime::command::Command;
 use crate::ui::format;
@@ -27,7 +28,9 @@ pub enum Text {
 
 impl App {
     pub(super) fn begin_typing(&mut self) -> Vec<Effect> {
-        let Some(var) = self.settable() else { return Vec::new() };
+        let Some(var) = self.value.clone() else { return self.say(NOTHING_SELECTED) };
+        // What can't be set is said, and letters typed all the same are no commands.
+        self.message = self.refusal(&var);
         let value = self.view.variables.get(&var).and_then(|variable| variable.value.as_ref());
         let text = value.and_then(format::source).unwrap_or_default();
         self.overlay = Overlay::Value(Typing { var, input: Input::new(text), text: Text::Present });
@@ -57,7 +60,19 @@ impl App {
         if value.is_empty() {
             return self.say("a value is a Lua expression, as in 128 or {x = 1}; Esc leaves");
         }
-        self.overlay = Overlay::Nothing;
+        if let Some(refusal) = self.refusal(&var) {
+            return self.say(refusal);
+        }
+        if let Overlay::Value(typing) = std::mem::replace(&mut self.overlay, Overlay::Nothing) {
+            self.sent = Some(typing);
+        }
         vec![Effect::Command(Command::Set { var, value })]
+    }
+
+    /// The engine refused a value: it can be mended where it was typed.
+    pub(super) fn type_again(&mut self) {
+        if let (Some(typing), Overlay::Nothing) = (self.sent.take(), &self.overlay) {
+            self.overlay = Overlay::Value(typing);
+        }
     }
 }

@@ -5,7 +5,8 @@ use serde_json::{Number, Value};
 use super::{App, Effect};
 use crate::runtime::command::Command;
 use crate::ui::format;
-use crate::ui::view::Path;
+
+pub(super) const NOTHING_SELECTED: &str = "no variable is selected; Down selects the first";
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Nudge {
@@ -16,30 +17,27 @@ pub enum Nudge {
 }
 
 impl App {
-    /// The selected variable, or a sentence why it can't be set.
-    pub(super) fn settable(&mut self) -> Option<Path> {
-        let Some(path) = self.value.clone() else {
-            self.message = Some("no variable is selected; Down selects the first".into());
-            return None;
-        };
-        let known = self.program().is_some_and(|program| program.var(&path).is_some());
+    /// Why a variable can't be set now.
+    pub(super) fn refusal(&self, path: &str) -> Option<String> {
+        let known = self.program().is_some_and(|program| program.var(path).is_some());
         if !known {
-            self.message = Some(format!("{path} comes from the robot and can't be set here"));
-            return None;
+            return Some(format!("{path} comes from the robot and can't be set here"));
         }
-        if self.view.variables.get(&path).is_none_or(|variable| variable.value.is_none()) {
-            self.message = Some(format!("{path} has no value: its machine isn't running"));
-            return None;
-        }
-        Some(path)
+        let valueless = self.view.variables.get(path).is_none_or(|variable| variable.value.is_none());
+        valueless.then(|| format!("{path} has no value: its machine isn't running"))
     }
 
     pub(super) fn nudge(&mut self, nudge: Nudge) -> Vec<Effect> {
-        let Some(path) = self.settable() else { return Vec::new() };
+        let Some(path) = self.value.clone() else { return self.say(NOTHING_SELECTED) };
+        if let Some(refusal) = self.refusal(&path) {
+            return self.say(refusal);
+        }
         let on_its_way = self.nudged.as_ref().filter(|(nudged, _)| *nudged == path).map(|(_, value)| value);
         let variable = self.view.variables.get(&path).and_then(|variable| variable.value.as_ref());
-        let Some(next) = on_its_way.or(variable).and_then(|value| nudged(value, nudge)) else {
-            return self.say(format!("{path} is neither a number nor a boolean; e types a value"));
+        let Some(value) = on_its_way.or(variable) else { return Vec::new() };
+        let next = match nudged(value, nudge) {
+            Ok(next) => next,
+            Err(why) => return self.say(format!("{path} {why}; e types a value")),
         };
         let Some(value) = format::source(&next) else { return Vec::new() };
         self.nudged = Some((path.clone(), next));
@@ -47,24 +45,30 @@ impl App {
     }
 }
 
-fn nudged(value: &Value, nudge: Nudge) -> Option<Value> {
+/// The next value, or what is said of one that has none.
+fn nudged(value: &Value, nudge: Nudge) -> Result<Value, String> {
     match value {
-        Value::Bool(yes) => Some(Value::Bool(!yes)),
+        Value::Bool(yes) => Ok(Value::Bool(!yes)),
         Value::Number(number) => nudged_number(number, nudge),
-        _ => None,
+        // Records carry these as text.
+        Value::String(text) if matches!(&**text, "inf" | "-inf" | "nan") => {
+            Err(format!("is {}, from where no step leads", format::value(value)))
+        }
+        _ => Err("is neither a number nor a boolean".into()),
     }
 }
 
-fn nudged_number(number: &Number, nudge: Nudge) -> Option<Value> {
+fn nudged_number(number: &Number, nudge: Nudge) -> Result<Value, String> {
+    let end = || format!("is {number}: a step further would leave the range of numbers");
     if let Some(whole) = number.as_i64() {
         let step = step(whole as f64, nudge).max(1.0) as i64;
-        let next = if is_up(nudge) { whole.checked_add(step)? } else { whole.checked_sub(step)? };
-        return Some(next.into());
+        let next = if is_up(nudge) { whole.checked_add(step) } else { whole.checked_sub(step) };
+        return next.map(Value::from).ok_or_else(end);
     }
-    let n = number.as_f64()?;
+    let n = number.as_f64().ok_or_else(end)?;
     let step = step(n, nudge);
     let raw = if is_up(nudge) { n + step } else { n - step };
-    Number::from_f64(tidy(raw, step)).map(Value::Number)
+    Number::from_f64(tidy(raw, step)).map(Value::Number).ok_or_else(end)
 }
 
 fn is_up(nudge: Nudge) -> bool {

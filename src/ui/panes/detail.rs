@@ -14,7 +14,7 @@ use crate::ui::layout::Pane;
 use crate::ui::pen::Pen;
 use crate::ui::scope::Row;
 use crate::ui::tree::{self, Element};
-use crate::ui::view::{Gravity, Problem, name};
+use crate::ui::view::{Cause, Gravity, Kind, Problem, name};
 
 /// Words at the left, words at the right, and what they are.
 #[derive(Clone, Debug, PartialEq)]
@@ -187,6 +187,20 @@ impl Page<'_> {
             n => format!("entered {n} times, {now}"),
         };
         self.add(Tone::Text, text);
+        self.way_in(program, id);
+    }
+
+    /// The transition by which an active state was entered.
+    fn way_in(&mut self, program: &Program, id: StateId) {
+        let (view, state) = (self.app.view(), &program[id]);
+        let machine = &program[state.machine].path;
+        let running = view.machines.get(machine).filter(|_| view.is_active(&state.path));
+        let Some(entered) = running.map(|machine| machine.entered) else { return };
+        let latest = view.taken.iter().rev().find(|(_, taken)| taken.machine == *machine);
+        if let Some((_, taken)) = latest.filter(|(t, taken)| *t == entered && name(&taken.to) == &*state.name) {
+            let name = taken.name.as_ref().map_or(String::new(), |name| format!(" ({name})"));
+            self.add_wrapped(Tone::Text, &format!("came from {} by {}{name}", taken.from, taken.trigger));
+        }
     }
 
     fn action(&mut self, program: &Program, kind: &str, block: BlockId) {
@@ -257,11 +271,38 @@ impl Page<'_> {
                 let place = entry.place.as_ref().map_or(String::new(), |(file, line)| format!("{file}:{line}"));
                 self.add_at(Tone::Heading, format::clock(entry.t), place);
                 self.add_wrapped(Tone::Text, &entry.text);
-                if !entry.state.is_empty() {
-                    self.add(Tone::Aside, format!("in {}", entry.state));
+                match &entry.kind {
+                    Kind::Change(cause) => self.cause(cause),
+                    _ if entry.state.is_empty() => (),
+                    _ => self.add(Tone::Aside, format!("in {}", entry.state)),
                 }
             }
         }
+    }
+
+    /// What a transition waits for, as far as its program still runs.
+    fn cause(&mut self, cause: &Cause) {
+        if let Some(name) = &cause.name {
+            self.add(Tone::Aside, format!("transition {name}"));
+        }
+        let app = self.app;
+        let known = cause.transition.filter(|&(load, _)| load == app.view().loads);
+        let Some((program, (_, id))) = app.program().zip(known) else { return };
+        let trigger = &program[id].trigger;
+        match trigger {
+            Trigger::Event(event) => {
+                self.add(Tone::Heading, format!("when {}", program[*event].name));
+                self.code(program, program[*event].block);
+            }
+            Trigger::Block(block) => {
+                self.add(Tone::Heading, "when");
+                self.code(program, *block);
+            }
+            Trigger::Always => self.add(Tone::Heading, "at once"),
+            Trigger::UnknownEvent(_) => (),
+            _ => self.add(Tone::Heading, format!("after {} ms", trigger_text(program, trigger))),
+        }
+        cause.evidence.iter().for_each(|seen| self.add(Tone::Aside, seen.clone()));
     }
 
     fn problem(&mut self, problem: &Problem) {

@@ -17,6 +17,8 @@ pub struct Edge {
     /// Which of the machine's transitions.
     pub index: u32,
     pub kind: EdgeKind,
+    /// The state it leads out of; none for `*`.
+    pub from: Option<StateId>,
 }
 
 impl Diagram {
@@ -27,10 +29,11 @@ impl Diagram {
         let two = graph::draw(&graph, &options(Rows::Two));
         let drawing = if two.height > height { graph::draw(&graph, &options(Rows::One)) } else { two };
         let states = &program[machine].states;
+        let edge = |edge: &graph::Edge| Edge { index: edge.id, kind: edge.kind, from: states.get(edge.from).copied() };
         Diagram {
             drawing,
             nodes: (0..graph.nodes.len()).map(|node| states.get(node).copied()).collect(),
-            edges: graph.edges.iter().map(|edge| Edge { index: edge.id, kind: edge.kind }).collect(),
+            edges: graph.edges.iter().map(edge).collect(),
         }
     }
 

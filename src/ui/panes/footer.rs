@@ -23,11 +23,11 @@ pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Option<Position> {
     pen.put_right("  ", theme.normal());
     pen.put(" ", theme.normal());
     match (typing, app.message()) {
-        (_, Some(message)) => {
+        (Some(typing), message) => Some(draw_typing(app, typing, message, pen, area)),
+        (None, Some(message)) => {
             pen.put(message, theme.bold());
             None
         }
-        (Some(typing), None) => Some(draw_typing(app, typing, pen, area)),
         (None, None) => {
             match app.overlay() {
                 Overlay::Help { .. } => draw_key(app, "Esc", "back", &mut pen),
@@ -38,10 +38,19 @@ pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Option<Position> {
     }
 }
 
-fn draw_typing(app: &App, typing: &Typing, mut pen: Pen, area: Rect) -> Position {
+/// With what is wrong beside it, if anything is.
+fn draw_typing(app: &App, typing: &Typing, message: Option<&str>, mut pen: Pen, area: Rect) -> Position {
     let theme = app.theme();
-    if pen.room() >= 58 {
-        pen.put_right("Enter sets  Esc leaves", theme.dim()).put_right("  ", theme.dim());
+    let needed = (format::width(&typing.var) + 3 + format::width(typing.input.value()) + 3).min(pen.room() / 2);
+    match message {
+        Some(message) => {
+            let message = format::fit(message, pen.room() - needed);
+            pen.put_right(&message, theme.stop()).put_right("  ", theme.normal());
+        }
+        None if pen.room() >= 58 => {
+            pen.put_right("Enter sets  Esc leaves", theme.dim()).put_right("  ", theme.dim());
+        }
+        None => (),
     }
     pen.put(&format::fit(&typing.var, pen.room() / 2), theme.bold()).put(" = ", theme.dim());
     let (start, room) = (pen.at(), pen.room().saturating_sub(1));

@@ -8,6 +8,7 @@ use super::diagram::Diagram;
 use super::{Title, draw_nothing};
 use crate::model::{MachineId, Program, StateId};
 use crate::ui::app::App;
+use crate::ui::format;
 use crate::ui::graph::Part;
 use crate::ui::layout::Pane;
 use crate::ui::machine_graph;
@@ -25,9 +26,22 @@ pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
     let diagram = app.diagram(program, machine, area);
     let brush = Brush::new(app, program, machine, &diagram);
     brush.draw(area, buffer);
-    let path = program[machine].path.replace('/', " / ");
-    let note = if app.follows() { "following" } else { "" };
-    Title::new(path, note)
+    let note = if app.follows() { "· follow" } else { "" };
+    let room = area.width.saturating_sub(4 + format::width(note));
+    Title::new(path_in(&program[machine].path, room), note)
+}
+
+/// `follower / looking / lookalgo`, closer where there is little room, and then only its end.
+fn path_in(path: &str, room: u16) -> String {
+    let spaced = path.replace('/', " / ");
+    if format::width(&spaced) <= room {
+        return spaced;
+    }
+    let mut rest = path;
+    while let Some((_, inner)) = rest.split_once('/').filter(|_| format::width(rest) + 2 > room) {
+        rest = inner;
+    }
+    if rest == path { path.into() } else { format!("…/{rest}") }
 }
 
 struct Brush<'a> {
@@ -36,24 +50,25 @@ struct Brush<'a> {
     diagram: &'a Diagram,
     active: Option<StateId>,
     selected: Option<StateId>,
-    /// The edges of the transition taken last.
-    last: Option<u32>,
+    /// The transition taken last, and the name of the state it led out of.
+    last: Option<(u32, &'a str)>,
 }
 
 impl<'a> Brush<'a> {
     fn new(app: &'a App, program: &'a Program, machine: MachineId, diagram: &'a Diagram) -> Brush<'a> {
         let path = &program[machine].path;
         let view = app.view();
-        let last = view.machines.get(path).filter(|machine| machine.running).and_then(|machine| machine.last_taken);
+        let running = view.machines.get(path).filter(|machine| machine.running);
+        let last = running.and_then(|machine| Some((machine.last_taken?, &*machine.last_from)));
         Brush {
             app,
             program,
             diagram,
             active: view.active(path).and_then(|state| program.state(state)),
             selected: app.selected().and_then(|path| program.state(path)),
-            last: last.map(|which| match which {
-                Which::Own(index) => index,
-                Which::Exit => machine_graph::EXIT,
+            last: last.map(|(which, from)| match which {
+                Which::Own(index) => (index, from),
+                Which::Exit => (machine_graph::EXIT, from),
             }),
         }
     }
@@ -105,8 +120,8 @@ impl<'a> Brush<'a> {
             }
             Part::Line(edge) | Part::Label(edge) | Part::Head(edge) => self.edge_style(edge),
             Part::Crossing { across, down } => {
-                let taken = |edge: usize| Some(self.diagram.edges[edge].index) == self.last;
-                self.edge_style(if taken(down) && !taken(across) { down } else { across })
+                let down_only = self.was_taken(down) && !self.was_taken(across);
+                self.edge_style(if down_only { down } else { across })
             }
         }
     }
@@ -124,15 +139,21 @@ impl<'a> Brush<'a> {
     }
 
     fn edge_style(&self, edge: usize) -> Style {
+        let style = self.app.theme().transition(self.diagram.edges[edge].kind);
+        if self.was_taken(edge) { style.add_modifier(Modifier::BOLD) } else { style }
+    }
+
+    /// Of a transition with several sources only the line out of the state that was left.
+    fn was_taken(&self, edge: usize) -> bool {
         let edge = self.diagram.edges[edge];
-        let style = self.app.theme().transition(edge.kind);
-        if Some(edge.index) == self.last { style.add_modifier(Modifier::BOLD) } else { style }
+        self.last.is_some_and(|(index, from)| {
+            index == edge.index && edge.from.is_none_or(|state| &*self.program[state].name == from)
+        })
     }
 
     /// What was taken last is heavy, so that it shows without colours too.
     fn draw_heavy(&self, (left, top): (u16, u16), area: Rect, buffer: &mut Buffer) {
-        let edges = self.diagram.edges.iter().enumerate();
-        for (edge, _) in edges.filter(|(_, edge)| Some(edge.index) == self.last) {
+        for edge in (0..self.diagram.edges.len()).filter(|&edge| self.was_taken(edge)) {
             for (at, glyph) in self.diagram.drawing.heavy_line(edge) {
                 let (Some(x), Some(y)) = (at.x.checked_sub(left), at.y.checked_sub(top)) else { continue };
                 if x < area.width
@@ -159,7 +180,7 @@ impl<'a> Brush<'a> {
             && y < area.height
         {
             let width = room.width.min(area.width - x);
-            let text = crate::ui::format::fit(name(active), width);
+            let text = format::fit(name(active), width);
             buffer.set_stringn(area.x + x, area.y + y, text, usize::from(width), self.node_style(node));
         }
     }

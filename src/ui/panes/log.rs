@@ -5,76 +5,165 @@ use ratatui::layout::Rect;
 
 use super::{Title, draw_nothing};
 use crate::runtime::record::Level;
-use crate::ui::app::{App, LogRow};
+use crate::ui::app::{App, Filter, LogRow, Shown};
 use crate::ui::format;
 use crate::ui::layout::Pane;
 use crate::ui::pen::Pen;
-use crate::ui::view::{Entry, Gravity, Kind, Problem, name};
+use crate::ui::view::{Cause, Entry, Gravity, Kind, Problem, ProblemKey, name};
+
+/// Columns from which on times and words stand with problems, where signs would do.
+const WIDE: u16 = 60;
+/// The same for all else.
+const TIMED: u16 = 31;
 
 pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
-    let window = app.reading().window(app.view(), usize::from(area.height));
-    if window.rows.is_empty() {
-        draw_nothing(app, area, buffer, "Nothing happened yet.");
+    let shown = app.reading().window(app.view(), usize::from(area.height), |key| is_long(app, key, area.width));
+    if shown.is_empty() {
+        draw_nothing(app, area, buffer, nothing(app));
     }
-    for (y, row) in (0..area.height).zip(&window.rows) {
-        let mut pen = Pen::new(buffer, area, y);
-        let held = app.reading().place.as_ref() == Some(row);
-        pen.put(if held { "▸" } else { " " }, app.theme().bold());
+    let mut y = 0;
+    for Shown { row, lines } in &shown {
+        let place = Rect { y: area.y + y, height: *lines, ..area }.intersection(area);
         match row {
             LogRow::Problem(key) => {
                 let problem = app.view().problems.iter().find(|problem| problem.key == *key);
-                problem.into_iter().for_each(|problem| draw_problem(app, problem, &mut pen));
+                problem.into_iter().for_each(|problem| draw_problem(app, problem, place, buffer));
             }
             LogRow::Entry(number) => {
-                app.view().journal.get(*number).into_iter().for_each(|entry| draw_entry(app, entry, &mut pen));
+                let entry = app.view().journal.get(*number);
+                entry.into_iter().for_each(|entry| draw_entry(app, entry, place, buffer));
             }
         }
-        if held && app.focus() == Pane::Log {
-            pen.wash(app.theme().selected());
+        if app.reading().place.as_ref() == Some(row) {
+            draw_place(app, place, buffer);
         }
+        y += lines;
     }
     Title::new(title(app), note(app))
 }
 
-fn draw_problem(app: &App, problem: &Problem, pen: &mut Pen) {
-    let theme = app.theme();
-    let time = if problem.count > 0 { format::clock(problem.last) } else { String::new() };
-    draw_time(app, &time, pen);
-    pen.right_column(&line(problem.key.line), 5, theme.dim());
-    if problem.count > 1 {
-        pen.put_right(&format!(" ×{}", problem.count), theme.normal());
+fn nothing(app: &App) -> &'static str {
+    match app.reading().filter {
+        Filter::Everything => "Nothing happened yet.",
+        Filter::WithoutChanges => "Nothing but transitions (v shows all).",
+        Filter::Warnings => "No warnings or errors (v shows all).",
     }
-    pen.put(word(problem.gravity), theme.gravity(problem.gravity)).put("  ", theme.normal());
-    if !problem.state.is_empty() {
-        pen.put(name(&problem.state), theme.normal()).put(": ", theme.normal());
-    }
-    pen.put(&problem.message, theme.normal());
 }
 
-fn draw_entry(app: &App, entry: &Entry, pen: &mut Pen) {
+/// Marks the row a reader is at.
+fn draw_place(app: &App, place: Rect, buffer: &mut Buffer) {
+    Pen::new(buffer, place, 0).put("▸", app.theme().bold());
+    if app.focus() == Pane::Log {
+        (0..place.height).for_each(|y| _ = Pen::new(buffer, place, y).wash(app.theme().selected()));
+    }
+}
+
+/// A problem in one line, and cut into what a first line holds and what is left for a second.
+struct Words {
+    time: String,
+    place: String,
+    count: String,
+    mark: &'static str,
+    whole: String,
+    first: String,
+    rest: String,
+}
+
+impl Words {
+    fn of(app: &App, problem: &Problem, columns: u16) -> Words {
+        let wide = columns >= WIDE;
+        let time = if problem.count > 0 { format::clock(problem.last) } else { String::new() };
+        let (file, number) = (&*problem.key.file, problem.key.line);
+        let (place, before) = match app.view().is_program(file) {
+            true => (line(number), name(&problem.state)),
+            false => (line(number), format::file_name(file)),
+        };
+        let before = if before.is_empty() { String::new() } else { format!("{before}: ") };
+        let count = if problem.count > 1 { format!(" ×{}", problem.count) } else { String::new() };
+        let mark = if wide { word(problem.gravity) } else { sign(problem.gravity) };
+        let taken = 1 + if wide { 8 + format::width(mark) + 2 } else { 2 };
+        // A fault that goes on is counted up without its words moving.
+        let counted = if problem.count > 0 { format::width(&count).max(5) } else { 0 };
+        let room = columns.saturating_sub(taken + counted + 5);
+        let mut whole = format!("{before}{}", problem.message);
+        let (first, mut rest) = format::split(&whole, room);
+        if let Some(help) = &problem.help {
+            rest += if rest.is_empty() { "" } else { "; " };
+            rest += help;
+            whole = format!("{whole}; {help}");
+        }
+        let time = if wide { format!("{time:>6}  ") } else { String::new() };
+        Words { time, place, count, mark, whole, first, rest }
+    }
+}
+
+/// Whether a problem has more to say than a line of a pane holds.
+pub fn is_long(app: &App, key: &ProblemKey, columns: u16) -> bool {
+    let problem = app.view().problems.iter().find(|problem| problem.key == *key);
+    problem.is_some_and(|problem| !Words::of(app, problem, columns).rest.is_empty())
+}
+
+fn draw_problem(app: &App, problem: &Problem, place: Rect, buffer: &mut Buffer) {
     let theme = app.theme();
-    draw_time(app, &format::clock(entry.t), pen);
-    match entry.kind {
-        Kind::Log(level) => draw_log(app, entry, level, pen),
-        Kind::Change | Kind::Note => {
-            pen.put(&entry.text, theme.normal());
+    let words = Words::of(app, problem, place.width);
+    let mut pen = Pen::new(buffer, place, 0);
+    pen.put(" ", theme.normal()).put(&words.time, theme.dim());
+    pen.right_column(&words.place, 5, theme.dim()).put_right(&words.count, theme.normal());
+    let gap = if words.time.is_empty() { " " } else { "  " };
+    pen.put(words.mark, theme.gravity(problem.gravity)).put(gap, theme.normal());
+    let indent = pen.at() - place.x;
+    match place.height {
+        0 | 1 => pen.put(&words.whole, theme.normal()),
+        _ => pen.put(&words.first, theme.normal()),
+    };
+    let mut pen = Pen::new(buffer, place, 1);
+    pen.column("", indent, theme.normal()).put(&words.rest, theme.normal());
+}
+
+fn draw_entry(app: &App, entry: &Entry, place: Rect, buffer: &mut Buffer) {
+    let theme = app.theme();
+    let mut pen = Pen::new(buffer, place, 0);
+    pen.put(" ", theme.normal());
+    draw_time(app, &format::clock(entry.t), &mut pen);
+    match &entry.kind {
+        Kind::Log(level) => draw_log(app, entry, *level, place.width, &mut pen),
+        Kind::Change(cause) => draw_change(app, entry, cause, &mut pen),
+        Kind::Hand(_) | Kind::Note => _ = pen.put(&entry.text, theme.normal()),
+    }
+}
+
+/// The line and the transition's name where there is room for them whole.
+fn draw_change(app: &App, entry: &Entry, cause: &Cause, pen: &mut Pen) {
+    let theme = app.theme();
+    let text = format::width(&entry.text);
+    if let Some((_, number)) = &entry.place
+        && pen.room() >= text + 5
+    {
+        pen.right_column(&line(*number), 5, theme.dim());
+    }
+    pen.put(&entry.text, theme.normal());
+    if let Some(name) = &cause.name {
+        let name = format!("  ({name})");
+        if pen.room() >= format::width(&name) {
+            pen.put(&name, theme.dim());
         }
     }
 }
 
-fn draw_log(app: &App, entry: &Entry, level: Level, pen: &mut Pen) {
+fn draw_log(app: &App, entry: &Entry, level: Level, columns: u16, pen: &mut Pen) {
     let theme = app.theme();
     let at = entry.place.as_ref().map_or(String::new(), |(_, number)| line(*number));
     if !at.is_empty() {
         pen.right_column(&at, 5, theme.dim());
     }
-    let (word, text) = match level {
-        Level::Error => ("error", theme.normal()),
-        Level::Warn => ("warn", theme.normal()),
-        Level::Info => ("info", theme.normal()),
-        Level::Debug => ("debug", theme.dim()),
+    let (word, sign) = match level {
+        Level::Error => ("error  ", "✗ "),
+        Level::Warn => ("warn  ", "! "),
+        Level::Info => ("info  ", "· "),
+        Level::Debug => ("debug  ", "· "),
     };
-    pen.put(word, theme.level(level)).put("  ", theme.normal());
+    let text = if level == Level::Debug { theme.dim() } else { theme.normal() };
+    pen.put(if columns < TIMED { sign } else { word }, theme.level(level));
     if !entry.state.is_empty() {
         pen.put(name(&entry.state), text).put(": ", text);
     }
@@ -83,7 +172,7 @@ fn draw_log(app: &App, entry: &Entry, level: Level, pen: &mut Pen) {
 
 /// Left out where the words need the room.
 fn draw_time(app: &App, time: &str, pen: &mut Pen) {
-    if pen.room() >= 30 {
+    if pen.room() >= TIMED - 1 {
         pen.column_right(time, 6, app.theme().dim()).put("  ", app.theme().dim());
     }
 }
@@ -93,6 +182,14 @@ fn word(gravity: Gravity) -> &'static str {
         Gravity::Error => "error",
         Gravity::Warning => "warn",
         Gravity::Hint => "hint",
+    }
+}
+
+fn sign(gravity: Gravity) -> &'static str {
+    match gravity {
+        Gravity::Error => "✗",
+        Gravity::Warning => "!",
+        Gravity::Hint => "·",
     }
 }
 
@@ -115,9 +212,12 @@ fn title(app: &App) -> String {
 
 fn note(app: &App) -> String {
     let reading = app.reading();
-    if reading.place.is_some() {
-        let newer = app.view().journal.next().saturating_sub(reading.since);
-        return if newer > 0 { format!("held, {newer} newer: Esc") } else { "held: Esc".into() };
+    let filter = reading.filter.label();
+    if reading.place.is_none() {
+        return filter.into();
     }
-    reading.filter.label().into()
+    let newer = app.view().journal.newest_first().take_while(|entry| entry.number >= reading.since);
+    let newer = newer.filter(|entry| reading.filter.shows(entry)).count();
+    let held = if newer > 0 { format!("held, {newer} newer: Esc") } else { "held: Esc".into() };
+    if filter.is_empty() { held } else { format!("{filter}, {held}") }
 }

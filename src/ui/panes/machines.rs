@@ -15,13 +15,23 @@ use crate::ui::view::{View, name};
 pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
     let rows = app.tree();
     let Some(program) = app.program().filter(|_| !rows.is_empty()) else {
-        draw_nothing(app, area, buffer, "No machine yet. Write one in your editor and save: it runs at once.");
+        draw_nothing(app, area, buffer, &nothing(app));
         return Title::new(Pane::Machines.title(), "");
     };
     for (y, row) in (0..area.height).zip(rows.iter().skip(app.tree_top())) {
         draw_row(app, program, row, Pen::new(buffer, area, y));
     }
     Title::new(Pane::Machines.title(), note(app, &rows, usize::from(area.height)))
+}
+
+fn nothing(app: &App) -> String {
+    match app.view().broken() {
+        Some(first) if app.view().is_program(&first.file) && first.line > 0 => {
+            format!("Nothing runs yet: line {}", app.view().headline(first))
+        }
+        Some(first) => format!("Nothing runs yet: {}", app.view().headline(first)),
+        None => "No machine yet. Write one in your editor and save: it runs at once.".into(),
+    }
 }
 
 /// What is out of sight: an active state above all.
@@ -85,32 +95,38 @@ fn draw_state(app: &App, program: &Program, id: StateId, pen: &mut Pen) {
     draw_mark(app, &state.path, pen);
 }
 
-/// From the right: visits, the time in the state or until its timeout, and that as a bar.
+/// From the right: visits, the time in the state or until its timeout, and that as a bar; as far as the name leaves room.
 fn draw_numbers(app: &App, program: &Program, id: StateId, pen: &mut Pen) {
     let (theme, view) = (app.theme(), app.view());
     let state = &program[id];
-    let width = pen.room();
-    if width >= 22 {
-        let visits = view.states.get(&state.path).map_or(0, |state| state.visits);
-        let visits = if visits == 0 { String::new() } else { format!("×{}", count(visits)) };
-        pen.right_column(&visits, 6, theme.dim());
+    let visits = view.states.get(&state.path).map_or(0, |state| state.visits);
+    let visits = if visits == 0 { String::new() } else { format!("×{}", count(visits)) };
+    let time = time(view, program, id);
+    let spare = |pen: &Pen| pen.room().saturating_sub(format::width(&state.name) + 2);
+    let times = if time.is_empty() { 0 } else { TIME };
+    if spare(pen) >= times + VISITS {
+        pen.right_column(&visits, VISITS, theme.dim());
     }
-    if width < 16 {
+    if time.is_empty() || spare(pen) < 8 {
         return;
     }
-    let timeout = view.timeout(program, id);
-    pen.right_column(&time(view, program, id), 8, theme.normal());
-    if width >= 31 {
-        let bar = timeout.map_or(String::new(), |timeout| format::bar(timeout, 5));
-        pen.right_column(&bar, 6, theme.active());
+    pen.right_column(&time, TIME, theme.normal());
+    if let Some(timeout) = view.timeout(program, id).filter(|_| spare(pen) >= BAR) {
+        pen.right_column(&format::bar(timeout, BAR - 1), BAR, theme.active());
     }
 }
 
-/// `120 ms` until a timeout, with its bar, or else how long the state has been active.
+/// Columns of a bar and what parts it from the name.
+const BAR: u16 = 6;
+const VISITS: u16 = 5;
+/// Columns of a time.
+const TIME: u16 = 10;
+
+/// `in 120 ms` until a timeout, or else how long the state has been active.
 fn time(view: &View, program: &Program, id: StateId) -> String {
     match view.timeout(program, id).map(|timeout| timeout.left()) {
         Some(left) if left < 0.5 => return "due".into(),
-        Some(left) => return format::duration(left),
+        Some(left) => return format!("in {}", format::duration(left)),
         None => (),
     }
     let state = &program[id];

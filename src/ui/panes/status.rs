@@ -10,27 +10,45 @@ use crate::ui::format;
 use crate::ui::pen::Pen;
 use crate::ui::view::{Edit, Mode, is_own_doing};
 
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+enum Room {
+    /// For what matters.
+    Scarce,
+    /// For words.
+    Usual,
+    /// For what could be done without.
+    Ample,
+}
+
+impl Room {
+    fn of(columns: u16) -> Room {
+        match columns {
+            0..60 => Room::Scarce,
+            60..100 => Room::Usual,
+            _ => Room::Ample,
+        }
+    }
+}
+
 pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) {
-    let (theme, view) = (app.theme(), app.view());
+    let theme = app.theme();
     let mut pen = Pen::new(buffer, area, 0);
-    let wide = area.width >= 60;
+    let room = Room::of(area.width);
+    if room == Room::Scarce {
+        draw_error_count(app, &mut pen);
+    }
     pen.put(" ", theme.normal());
-    if wide {
-        pen.put(format::file_name(&app.options().file), theme.bold()).put("  ", theme.normal());
+    if room == Room::Ample || (room == Room::Usual && !has_message(app)) {
+        pen.put(&format::fit(format::file_name(&app.options().file), 24), theme.bold()).put("  ", theme.normal());
     }
-    let mode = if app.halted() { &Mode::Stopped } else { &view.mode };
-    let badge = badge(mode);
+    let (badge, mode) = badge(app);
     pen.put(&format!(" {badge} "), theme.mode(mode));
-    pen.column("", 9 - format::width(badge).min(8), theme.normal());
-    let clock = format::clock(view.t);
-    let narrow = area.width < 100;
-    let pace = if narrow && *mode != Mode::Running { format!("step {}", view.step) } else { rate(app) };
-    pen.column(&pace, if wide { 11 } else { 9 }, theme.normal());
-    pen.column(&clock, format::width(&clock).max(6) + 2, theme.normal());
-    if !narrow {
-        pen.column(&format!("step {}", view.step), 14, theme.dim());
+    pen.column("", 7 - format::width(badge).min(6), theme.normal());
+    draw_pace(app, mode, room, &mut pen);
+    if room > Room::Scarce {
+        draw_errors(app, &mut pen);
     }
-    draw_bridges(app, &mut pen);
+    draw_bridges(app, room, &mut pen);
     draw_edit(app, &mut pen);
     if let Mode::Paused { reason } = mode
         && pen.room() > 12
@@ -40,11 +58,56 @@ pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) {
     }
 }
 
-fn badge(mode: &Mode) -> &'static str {
-    match mode {
-        Mode::Running => "RUN",
-        Mode::Paused { .. } => "PAUSED",
-        Mode::Stopped => "STOPPED",
+/// How fast it steps, for how long; nothing where there is nothing that could step.
+fn draw_pace(app: &App, mode: &Mode, room: Room, pen: &mut Pen) {
+    let (theme, view) = (app.theme(), app.view());
+    if view.broken().is_some() {
+        return;
+    }
+    let clock = format::clock(view.t);
+    let stands = room < Room::Ample && *mode != Mode::Running;
+    let pace = if stands { format!("step {}", view.step) } else { rate(app) };
+    let column = if room > Room::Scarce { 9 } else { 7 };
+    pen.column(&pace, format::width(&pace).max(column) + 2, theme.normal());
+    pen.column(&clock, format::width(&clock).max(6) + 2, theme.normal());
+    if room == Room::Ample {
+        pen.column(&format!("step {}", view.step), 14, theme.dim());
+    }
+}
+
+fn draw_errors(app: &App, pen: &mut Pen) {
+    match app.view().errors() {
+        0 => (),
+        1 => _ = pen.put("1 error  ", app.theme().stop()),
+        n => _ = pen.put(&format!("{n} errors  "), app.theme().stop()),
+    }
+}
+
+/// `!2` at the right end, so that it is seen however short the line is.
+fn draw_error_count(app: &App, pen: &mut Pen) {
+    let (errors, style) = (app.view().errors(), app.theme().stop());
+    if errors > 0 {
+        pen.put_right(" ", style).put_right(&format!("!{errors}"), style).put_right(" ", style);
+    }
+}
+
+/// Whether there is more to say than the program's name.
+fn has_message(app: &App) -> bool {
+    let view = app.view();
+    let rejected = matches!(view.edit, Some(Edit::Rejected { .. }));
+    rejected || matches!(&view.mode, Mode::Paused { reason } if !is_own_doing(reason))
+}
+
+fn badge(app: &App) -> (&'static str, &Mode) {
+    let view = app.view();
+    if view.broken().is_some() {
+        return ("BROKEN", &Mode::Stopped);
+    }
+    match &view.mode {
+        _ if app.halted() => ("STOPPED", &Mode::Stopped),
+        mode @ Mode::Running => ("RUN", mode),
+        mode @ Mode::Paused { .. } => ("PAUSED", mode),
+        mode @ Mode::Stopped => ("STOPPED", mode),
     }
 }
 
@@ -55,14 +118,21 @@ fn rate(app: &App) -> String {
     let actual = view.actual.filter(|_| view.mode == Mode::Running);
     match actual {
         Some(actual) if view.rate == 0.0 => format!("max {}", format::rate(actual.round().max(1.0))),
-        Some(actual) if (actual - view.rate).abs() > view.rate * 0.1 => format!("{actual:.1}/{wanted}"),
+        Some(actual) if (actual - view.rate).abs() > view.rate * 0.1 => format!("{}/{wanted}", steps(actual)),
         _ => wanted,
     }
 }
 
-fn draw_bridges(app: &App, pen: &mut Pen) {
+/// `9.3`, `315`
+fn steps(rate: f64) -> String {
+    if rate < 9.95 { format!("{rate:.1}") } else { format::rate(rate.round()).replace(" Hz", "") }
+}
+
+/// That one is up goes without saying where there is little room.
+fn draw_bridges(app: &App, room: Room, pen: &mut Pen) {
     let theme = app.theme();
-    for (name, bridge) in app.view().bridges.iter().filter(|(_, bridge)| bridge.health.is_some()) {
+    let told = |health: Option<Health>| health.is_some_and(|health| room == Room::Ample || health != Health::Up);
+    for (name, bridge) in app.view().bridges.iter().filter(|(_, bridge)| told(bridge.health)) {
         let health = match bridge.health {
             Some(Health::Up) => "up",
             Some(Health::Connecting) => "connecting",
@@ -77,9 +147,18 @@ fn draw_bridges(app: &App, pen: &mut Pen) {
     }
 }
 
+/// In fewer columns a message says nothing.
+const SENTENCE: u16 = 16;
+
 fn draw_edit(app: &App, pen: &mut Pen) {
     let Some(edit) = &app.view().edit else { return };
-    let (text, style) = edit_words(app, edit);
+    let (mut text, style) = edit_words(app, edit);
+    if let Edit::Rejected { first, .. } = edit
+        && pen.room() < SENTENCE
+        && first.line > 0
+    {
+        text = format!("line {}", first.line);
+    }
     pen.put_right(" ", style).put_right(&text, style).put_right("  ", Style::new());
 }
 
@@ -89,11 +168,8 @@ fn edit_words(app: &App, edit: &Edit) -> (String, Style) {
         Edit::Loaded => (String::new(), theme.dim()),
         Edit::Taken { changes, restarted: None } => (format!("saved: {changes}"), theme.normal()),
         Edit::Taken { changes, restarted: Some(_) } => (format!("restarted: {changes}"), theme.bold()),
+        Edit::Restarted => ("restarted".into(), theme.normal()),
         Edit::Mended => ("mended".into(), theme.normal()),
-        Edit::Rejected { first, .. } if first.line == 0 => (first.message.clone(), theme.stop()),
-        Edit::Rejected { first, others } => {
-            let more = if *others > 0 { format!(" (+{others})") } else { String::new() };
-            (format!("line {}: {}{more}", first.line, first.message), theme.stop())
-        }
+        Edit::Rejected { first, .. } => (app.view().headline(first), theme.stop()),
     }
 }

@@ -13,6 +13,8 @@ use crate::ui::pen::Pen;
 use crate::ui::scope::{Row, Shares, Way};
 use crate::ui::view::Variable;
 
+/// What was sent longer ago than this is no longer being sent.
+const SENT: Time = Time(1_000_000);
 /// Columns of a number.
 const VALUE: u16 = 9;
 
@@ -62,10 +64,11 @@ fn draw_row(app: &App, row: &Row, mut pen: Pen) {
         Row::Message { name, value, at, way, .. } => {
             let arrow = if *way == Way::Output { "→" } else { " " };
             pen.put(arrow, theme.dim()).put(name, theme.normal()).put("  ", theme.normal());
-            if *way == Way::Input {
-                draw_age(app, *at, &mut pen);
-            }
-            pen.put(&format::message(value), theme.normal());
+            draw_age(app, *at, &mut pen);
+            match way {
+                Way::Output if app.view().t.since(*at) > SENT => pen.put("–", theme.dim()),
+                _ => pen.put(&format::message(value), theme.normal()),
+            };
         }
     }
     if selected && app.focus() == Pane::Variables {
@@ -117,11 +120,16 @@ enum Aside<'a> {
     Moved,
 }
 
+/// How often it changed lately: what never does has no curve.
+fn changes(variable: &Variable) -> usize {
+    variable.history.iter().zip(variable.history.iter().skip(1)).filter(|(before, after)| before != after).count()
+}
+
 fn aside(variable: &Variable) -> Aside<'_> {
     let set_by_person = matches!(&*variable.by, "command" | "init");
     match &variable.previous {
         Some(previous) if set_by_person && variable.previous != variable.value => Aside::Was(previous),
-        _ if variable.history.len() > 1 => Aside::Moved,
+        _ if changes(variable) > 1 => Aside::Moved,
         _ => Aside::Nothing,
     }
 }

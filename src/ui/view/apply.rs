@@ -6,8 +6,8 @@ use serde_json::Value;
 
 use super::mode::is_own_doing;
 use super::problem::{Origin, Problem};
-use super::{Edit, Kind, Message, Mode, Path, TAKEN_KEPT, View, Which, World, name, owner};
-use crate::model::Program;
+use super::{Cause, Edit, Kind, Message, Mode, Path, TAKEN_KEPT, View, Which, World, name, owner};
+use crate::model::{Program, TransitionId, Trigger};
 use crate::runtime::command::Command;
 use crate::runtime::record::{BridgeState, Fault, Finding, Forced, Health, Load, Log, Record, Taken, What};
 use crate::ui::format;
@@ -32,7 +32,7 @@ impl View {
             What::Log(log) => self.log(log),
             What::Error(fault) => self.fault(fault),
             What::Pause { reason } => self.pause(reason),
-            What::Resume => (self.mode, self.actual) = (Mode::Running, None),
+            What::Resume => self.resume(),
             What::Force { state, how } => self.force(state, *how),
             What::Restart { reason } => self.restart(reason),
             What::Stop { reason } => self.stop(reason),
@@ -53,8 +53,21 @@ impl View {
         }
         self.problems =
             load.findings.iter().map(|finding| Problem::from_finding(finding, Origin::Check, self.t)).collect();
-        self.journal.note(self.t, note_of_edit(&edit));
+        self.note_edit(&edit);
         self.edit = Some(edit);
+    }
+
+    fn note_edit(&mut self, edit: &Edit) {
+        let text = match edit {
+            Edit::Loaded => "program loaded".into(),
+            Edit::Taken { changes, restarted: None } => format!("saved: {changes}"),
+            Edit::Taken { changes, restarted: Some(reason) } => format!("saved: {changes}; restarted: {reason}"),
+            Edit::Restarted => "restarted".into(),
+            Edit::Mended => "mended: what runs is what the files say".into(),
+            Edit::Rejected { first, .. } if first.line == 0 => self.headline(first),
+            Edit::Rejected { first, .. } => format!("not taken over: {}", self.headline(first)),
+        };
+        self.journal.note(self.t, text);
     }
 
     fn take_over(&mut self, program: &Arc<Program>) {
@@ -69,7 +82,7 @@ impl View {
         let rejected = findings.iter().map(|finding| Problem::from_finding(finding, Origin::Rejected, self.t));
         self.problems.splice(0..0, rejected);
         let edit = Edit::of_reject(findings);
-        self.journal.note(self.t, note_of_edit(&edit));
+        self.note_edit(&edit);
         self.edit = Some(edit);
     }
 
@@ -78,6 +91,7 @@ impl View {
             Command::Rate { hz } => (self.rate, self.actual) = (*hz, None),
             Command::Runstop => self.mode = Mode::Stopped,
             Command::PutAtStart { bridge } => {
+                self.journal.note(self.t, format!("{bridge} put at its start"));
                 if let Some(world) = self.world.as_mut().filter(|world| *world.bridge == **bridge) {
                     world.trail.clear();
                 }
@@ -117,24 +131,44 @@ impl View {
     fn take(&mut self, taken: &Taken) {
         let t = self.t;
         let which = if taken.via.is_some() { Which::Exit } else { Which::Own(taken.index) };
-        self.machines.entry(taken.machine.clone()).or_default().last_taken = Some(which);
+        let machine = self.machines.entry(taken.machine.clone()).or_default();
+        (machine.last_taken, machine.last_from) = (Some(which), taken.from.clone());
         if self.taken.len() == TAKEN_KEPT {
             self.taken.pop_front();
         }
         self.taken.push_back((t, taken.clone()));
-        let why = taken.name.as_ref().unwrap_or(&taken.trigger);
-        let text = format!("{} → {}  {why}", name(&taken.from), name(&taken.to));
+        let text = format!("{} → {}  {}", name(&taken.from), name(&taken.to), taken.trigger);
         let state = format!("{}/{}", taken.machine, name(&taken.to));
-        let place = self.place_of(taken);
-        self.journal.add(t, Kind::Change, text, state.into(), place);
+        let cause = self.transition(taken);
+        let place = cause.and_then(|cause| self.place_of(cause));
+        let evidence = cause.map_or_else(Vec::new, |cause| self.evidence_for(cause));
+        let cause = Cause { name: taken.name.clone(), transition: cause.map(|id| (self.loads, id)), evidence };
+        self.journal.add(t, Kind::Change(cause), text, state.into(), place);
     }
 
-    /// An exit is written in the machine it leaves.
-    fn place_of(&self, taken: &Taken) -> Option<(Path, usize)> {
+    /// The transition of the program that was taken. An exit is written in the machine it leaves.
+    pub fn transition(&self, taken: &Taken) -> Option<TransitionId> {
         let program = self.program.as_ref()?;
         let written_in = taken.via.as_ref().and_then(|via| owner(via)).unwrap_or(&taken.machine);
         let machine = &program[program.machine(written_in)?];
-        let span = program[*machine.transitions.get(taken.index as usize)?].span;
+        machine.transitions.get(taken.index as usize).copied()
+    }
+
+    /// A transition's record comes before what its actions change.
+    fn evidence_for(&self, transition: TransitionId) -> Vec<String> {
+        let Some(program) = &self.program else { return Vec::new() };
+        let transition = &program[transition];
+        let block = match transition.trigger {
+            Trigger::Event(event) => program[event].block,
+            Trigger::Block(block) => block,
+            _ => return Vec::new(),
+        };
+        self.evidence(program, transition.machine, &program[block].code)
+    }
+
+    fn place_of(&self, transition: TransitionId) -> Option<(Path, usize)> {
+        let program = self.program.as_ref()?;
+        let span = program[transition].span;
         let source = program.source(span);
         Some((source.name.clone(), source.line(span.start as usize)))
     }
@@ -152,9 +186,11 @@ impl View {
 
     fn set(&mut self, var: &Path, value: &Value, by: &Path) {
         let t = self.t;
-        self.variables.entry(var.clone()).or_default().set(value, by, t);
+        let variable = self.variables.entry(var.clone()).or_default();
+        variable.set(value, by, t);
         if **by == *"command" {
-            self.journal.note(t, format!("{} set to {}", name(var), format::value(value)));
+            let before = variable.previous.as_ref().map_or_else(|| "nil".into(), format::value);
+            self.journal.set_by_hand(t, var, &before, &format::value(value));
         }
     }
 
@@ -186,12 +222,20 @@ impl View {
     }
 
     fn pause(&mut self, reason: &str) {
-        if !is_own_doing(reason) {
-            self.journal.note(self.t, format!("paused: {reason}"));
+        match reason {
+            // The stop itself is told.
+            "runstop" => (),
+            _ if is_own_doing(reason) => self.journal.note(self.t, "paused"),
+            _ => self.journal.note(self.t, format!("paused: {reason}")),
         }
         if self.mode != Mode::Stopped {
             self.mode = Mode::Paused { reason: reason.into() };
         }
+    }
+
+    fn resume(&mut self) {
+        (self.mode, self.actual) = (Mode::Running, None);
+        self.journal.note(self.t, "goes on");
     }
 
     /// The entering itself has records of its own.
@@ -200,14 +244,33 @@ impl View {
             Forced::Transition => "sent to",
             Forced::Jump => "jumped to",
         };
-        let machine = owner(state).map_or("", name);
-        self.journal.note(self.t, format!("{machine} {verb} {}", name(state)));
+        for state in self.way_to(state) {
+            let machine = owner(&state).unwrap_or("");
+            let verb = if self.is_running(machine) { verb } else { "spawned in" };
+            self.journal.note(self.t, format!("{} {verb} {}", name(machine), name(&state)));
+        }
+    }
+
+    /// The states to be in for a state, from the nearest machine that runs inwards; with none, it alone.
+    fn way_to(&self, state: &Path) -> Vec<Path> {
+        let mut way = vec![state.clone()];
+        let mut inner: &str = state;
+        while let Some(machine) = owner(inner).filter(|machine| !self.is_running(machine)) {
+            let Some(outer) = owner(machine) else { return vec![state.clone()] };
+            way.push(outer.into());
+            inner = outer;
+        }
+        way.reverse();
+        way
     }
 
     /// One because of an edit was told with the edit.
     fn restart(&mut self, reason: &str) {
         self.begin_again();
         let told = matches!(&self.edit, Some(Edit::Taken { restarted: Some(told), .. }) if told == reason);
+        if is_own_doing(reason) && !matches!(self.edit, Some(Edit::Rejected { .. })) {
+            self.edit = Some(Edit::Restarted);
+        }
         match told {
             true => (),
             false if is_own_doing(reason) => self.journal.note(self.t, "restarted"),
@@ -215,9 +278,9 @@ impl View {
         }
     }
 
-    /// The robot is stopped at every restart and runstop, which have their own marks.
+    /// The robot is stopped at every restart, which is told by itself.
     fn stop(&mut self, reason: &str) {
-        if !matches!(reason, "restart" | "runstop") {
+        if reason != "restart" {
             self.journal.note(self.t, format!("robot stopped: {reason}"));
         }
     }
@@ -251,17 +314,6 @@ impl View {
                 self.world = Some(World::new(&state.bridge, text));
             }
         }
-    }
-}
-
-fn note_of_edit(edit: &Edit) -> String {
-    match edit {
-        Edit::Loaded => "program loaded".into(),
-        Edit::Taken { changes, restarted: None } => format!("saved: {changes}"),
-        Edit::Taken { changes, restarted: Some(reason) } => format!("saved: {changes}; restarted: {reason}"),
-        Edit::Mended => "mended: what runs is what the files say".into(),
-        Edit::Rejected { first, .. } if first.line == 0 => format!("{}: {}", first.file, first.message),
-        Edit::Rejected { first, .. } => format!("not taken over: line {}: {}", first.line, first.message),
     }
 }
 

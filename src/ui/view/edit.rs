@@ -8,6 +8,8 @@ pub enum Edit {
     Loaded,
     /// `changes`: `+2 states, ~1 action`.
     Taken { changes: String, restarted: Option<String> },
+    /// A person had the program begin again since.
+    Restarted,
     /// What couldn't be taken over is mended: what runs is what the files say.
     Mended,
     /// The program that runs goes on; the first finding says why.

@@ -2,7 +2,8 @@
 
 use std::collections::VecDeque;
 
-use super::Path;
+use super::{Path, name};
+use crate::model::TransitionId;
 use crate::runtime::record::Level;
 use crate::runtime::time::Time;
 
@@ -28,16 +29,59 @@ pub struct Entry {
     pub place: Option<(Path, usize)>,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Kind {
     Log(Level),
     /// A transition taken.
-    Change,
+    Change(Cause),
+    /// A person set a variable.
+    Hand(Hand),
     /// An edit, a pause, a restart, a robot coming or going.
     Note,
 }
 
+/// The transition that was taken.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Cause {
+    pub name: Option<Path>,
+    /// In the program of this many loads.
+    pub transition: Option<(u64, TransitionId)>,
+    /// What its condition saw: `robot.light.data 142`.
+    pub evidence: Vec<String>,
+}
+
+/// A variable that is set again and again keeps one entry for it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Hand {
+    var: Path,
+    before: String,
+    times: u64,
+    last: Time,
+}
+
+/// Within this time a variable set again is set by the same hand.
+const SAME_HAND: Time = Time(3_000_000);
+/// So far back it is looked for.
+const NEAR: usize = 40;
+
 impl Journal {
+    /// From one value to another, both as text.
+    pub fn set_by_hand(&mut self, t: Time, var: &Path, from: &str, to: &str) {
+        let mut recent = self.entries.iter_mut().rev().take(NEAR);
+        let known = recent.find_map(|entry| match &mut entry.kind {
+            Kind::Hand(hand) if hand.var == *var && t.since(hand.last) < SAME_HAND => Some((&mut entry.text, hand)),
+            _ => None,
+        });
+        if let Some((text, hand)) = known {
+            (hand.times, hand.last) = (hand.times + 1, t);
+            *text = format!("{} {} → {to} (×{})", name(var), hand.before, hand.times);
+            return;
+        }
+        let text = format!("{} {from} → {to}", name(var));
+        let hand = Hand { var: var.clone(), before: from.into(), times: 1, last: t };
+        self.add(t, Kind::Hand(hand), text, "".into(), None);
+    }
+
     pub fn add(&mut self, t: Time, kind: Kind, text: String, state: Path, place: Option<(Path, usize)>) {
         if self.entries.len() == KEPT {
             self.entries.pop_front();

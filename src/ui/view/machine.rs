@@ -15,6 +15,8 @@ pub struct Machine {
     pub spawned_by: Option<Path>,
     /// The transition taken last.
     pub last_taken: Option<Which>,
+    /// The name of the state it led out of.
+    pub last_from: Path,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

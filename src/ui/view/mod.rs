@@ -4,6 +4,7 @@
 mod apply;
 mod bridge;
 mod edit;
+mod evidence;
 mod journal;
 mod machine;
 mod mode;
@@ -16,7 +17,7 @@ use std::sync::Arc;
 
 pub use bridge::{Bridge, Message};
 pub use edit::Edit;
-pub use journal::{Entry, Journal, Kind};
+pub use journal::{Cause, Entry, Journal, Kind};
 pub use machine::{Machine, State, Timeout, Which};
 pub use mode::{Mode, is_own_doing};
 pub use problem::{Gravity, Origin, Problem, ProblemKey};
@@ -24,8 +25,9 @@ pub use variable::Variable;
 pub use world::World;
 
 use crate::model::Program;
-use crate::runtime::record::Taken;
+use crate::runtime::record::{Finding, Taken};
 use crate::runtime::time::Time;
+use crate::ui::format::file_name;
 
 pub type Path = Arc<str>;
 
@@ -100,6 +102,42 @@ impl View {
 
     pub fn is_active(&self, state: &str) -> bool {
         owner(state).and_then(|machine| self.active(machine)).is_some_and(|active| **active == *state)
+    }
+
+    /// How many errors there are now.
+    pub fn errors(&self) -> usize {
+        self.problems.iter().filter(|problem| problem.gravity == Gravity::Error).count()
+    }
+
+    /// The first finding of a program that was never good enough to run.
+    pub fn broken(&self) -> Option<&Finding> {
+        match &self.edit {
+            Some(Edit::Rejected { first, .. }) if self.program.is_none() => Some(first),
+            _ => None,
+        }
+    }
+
+    /// `49: message`; in another file than the program's `curve.world:4: message`; of a whole file `curve.world: message`.
+    pub fn headline(&self, finding: &Finding) -> String {
+        format!("{}{}", self.place_words(&finding.file, finding.line), finding.message)
+    }
+
+    /// What stands before a message to say where it belongs: `49: `, `curve.world:4: `, `curve.world: `.
+    fn place_words(&self, file: &str, line: usize) -> String {
+        match (self.is_program(file), line) {
+            (true, 0) => String::new(),
+            (true, line) => format!("{line}: "),
+            (false, 0) => format!("{}: ", file_name(file)),
+            (false, line) => format!("{}:{line}: ", file_name(file)),
+        }
+    }
+
+    /// Whether a file is the program itself and not one it requires or a world.
+    pub fn is_program(&self, file: &str) -> bool {
+        match self.program.as_ref().and_then(|program| program.sources.first()) {
+            Some(source) => *source.name == *file,
+            None => file.ends_with(".lrp"),
+        }
     }
 
     /// The worst that is wrong with an element or anything inside it.
