@@ -59,6 +59,10 @@ pub(super) unsafe extern "C-unwind" fn rawset(state: *mut ffi::lua_State) -> c_i
             return ffi::luaL_error(state, c"there are no globals; declare a variable or use 'local'".as_ptr());
         }
         ffi::lua_pop(state, 1);
+        // Libraries and robots.
+        if ffi::luaL_getmetafield(state, 1, c"__metatable".as_ptr()) != ffi::LUA_TNIL {
+            return ffi::luaL_error(state, c"this table stays as it is".as_ptr());
+        }
         originals().rawset(state)
     }
 }

@@ -66,6 +66,19 @@ end
 function own.less(a, b) return a < b end
 function own.compare(f) return function(a, b) return f(a, b) end end
 
+-- What one block did to a library would hold for all others, and outlive a restart.
+for _, name in ipairs { "coroutine", "log", "math", "os", "string", "table", "utf8" } do
+  local library = env[name]
+  if library then
+    env[name] = setmetatable({}, {
+      __index = library,
+      __newindex = function(_, key) error("'" .. name .. "." .. tostring(key) .. "' can't be assigned: libraries stay as they are", 2) end,
+      __pairs = function() return next, library end,
+      __metatable = "library",
+    })
+  end
+end
+
 if order == "by key" then
   local rank = { number = 1, string = 2, boolean = 3 }
   local function before(a, b)

@@ -88,8 +88,8 @@ impl Sandbox {
         sandbox.take_originals()?;
         let order = sandbox.order()?;
         sandbox.replace_functions()?;
-        sandbox.run_prelude(access, order, seed)?;
         sandbox.protect_strings()?;
+        sandbox.run_prelude(access, order, seed)?;
         sandbox.be_strict()?;
         let names = sandbox.environment.pairs::<String, mlua::Value>().filter_map(|pair| Some(pair.ok()?.0));
         desk.known.borrow_mut().extend(names);

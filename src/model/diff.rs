@@ -20,6 +20,7 @@ pub fn diff(old: &Program, new: &Program) -> Vec<Change> {
         same_block(old, old[a].block, new, new[b].block)
     }));
     changes.extend(compare(Element::Transition, transitions(old), transitions(new), |_, _| true));
+    changes.extend(reordered(old, new));
     changes.extend(compare(Element::Spawn, spawns(old), spawns(new), |a, b| a == b));
     changes.extend(compare(Element::Action, hooks(old), hooks(new), |&a, &b| same_block(old, a, new, b)));
     changes
@@ -107,6 +108,30 @@ fn transitions(program: &Program) -> Named<()> {
         named.push((key.into(), ()));
     }
     named
+}
+
+/// States out of which the same transitions are tried in another order.
+fn reordered(old: &Program, new: &Program) -> Vec<Change> {
+    let order = |program: &Program, state: StateId| -> Vec<String> {
+        program[state].outgoing.iter().map(|&id| transition_key(program, &program[id])).collect()
+    };
+    let before: HashMap<&str, StateId> =
+        old.states.iter().enumerate().map(|(i, state)| (&*state.path, StateId(i as u32))).collect();
+    let mut changes = Vec::new();
+    for (index, state) in new.states.iter().enumerate() {
+        let Some(&was) = before.get(&*state.path) else { continue };
+        let (mut was, mut now) = (order(old, was), order(new, StateId(index as u32)));
+        was.retain(|key| now.contains(key));
+        now.retain(|key| was.contains(key));
+        // Equal ones have no order among themselves.
+        was.dedup();
+        now.dedup();
+        if was != now {
+            let path = format!("{}: order out of {}", new[state.machine].path, state.name).into();
+            changes.push(Change { op: Op::Changed, kind: Element::Transition, path });
+        }
+    }
+    changes
 }
 
 /// `follower: on bumping * -> bumpback`

@@ -61,6 +61,8 @@ pub(super) struct Running {
     pub state: StateId,
     pub entered: Time,
     pub nested: Vec<MachineId>,
+    /// Found to hold right after entry: taken in the next step, unless an edit comes between.
+    pub decided: Option<super::machine::Fired>,
 }
 
 impl Engine {

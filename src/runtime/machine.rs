@@ -8,6 +8,7 @@ use crate::model::*;
 use crate::syntax::Code;
 
 /// A transition whose guard holds; `via` is the nested state an exit transition is written at.
+#[derive(Clone, Copy)]
 pub(super) struct Fired {
     transition: TransitionId,
     target: StateId,
@@ -33,7 +34,8 @@ impl Spawner {
 impl Engine {
     pub(super) fn step_machine(&mut self, plan: &Plan, machine: MachineId) {
         let Some(state) = self.active_state(machine) else { return };
-        if let Some(fired) = self.firing(plan, machine, state) {
+        let decided = self.running[machine.index()].as_mut().and_then(|running| running.decided.take());
+        if let Some(fired) = decided.or_else(|| self.firing(plan, machine, state)) {
             self.take(plan, machine, state, fired);
             self.settle(plan, machine);
             return;
@@ -174,6 +176,7 @@ impl Engine {
         if let Some(running) = &mut self.running[machine.index()] {
             running.state = state;
             running.entered = self.now;
+            running.decided = None;
         }
         self.visits[state.index()] += 1;
         self.note(Note::Enter(state));
@@ -212,7 +215,7 @@ impl Engine {
 
     /// Makes a machine run, its variables initialised, before any state is entered.
     pub(super) fn start(&mut self, machine: MachineId, state: StateId, by: Option<StateId>) {
-        self.running[machine.index()] = Some(Running { state, entered: self.now, nested: Vec::new() });
+        self.running[machine.index()] = Some(Running { state, entered: self.now, nested: Vec::new(), decided: None });
         let parent = by.and_then(|state| self.running[self.program[state].machine.index()].as_mut());
         match parent {
             Some(parent) => parent.nested.push(machine),
@@ -231,7 +234,10 @@ impl Engine {
         if plan.running(state).is_empty() && self.nested_count(machine) == 0 {
             return;
         }
-        if self.firing(plan, machine, state).is_some() {
+        if let Some(fired) = self.firing(plan, machine, state) {
+            if let Some(running) = &mut self.running[machine.index()] {
+                running.decided = Some(fired);
+            }
             return;
         }
         self.run_all(plan, plan.running(state));

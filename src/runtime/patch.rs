@@ -80,7 +80,7 @@ impl Engine {
                 continue;
             };
             let nested = was.nested.iter().filter_map(follow).collect();
-            running[machine.index()] = Some(Running { state, entered: was.entered, nested });
+            running[machine.index()] = Some(Running { state, entered: was.entered, nested, decided: None });
         }
         for (state, &count) in old.states.iter().zip(&self.visits) {
             if let Some(&now) = states.get(&*state.path) {

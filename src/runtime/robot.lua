@@ -131,9 +131,22 @@ local robot = setmetatable({}, {
   end,
 })
 
+-- A field that a message hasn't is an error, not a nil that drives on.
+local function strict(message, defaults, path)
+  if type(message) ~= "table" or type(defaults) ~= "table" or next(defaults) == nil or #defaults > 0 then return message end
+  for field, default in pairs(defaults) do strict(message[field], default, path .. "." .. field) end
+  return setmetatable(message, {
+    __index = function(_, field)
+      if defaults[field] ~= nil then return nil end
+      error(("`%s` has no field `%s`; it has %s"):format(path, tostring(field), names(defaults)), 2)
+    end,
+  })
+end
+
 local engine = {
   receive = function(input, message, time)
-    latest[input], came[input], heard[input] = message, time, true
+    latest[input] = strict(message, offer.inputs[input], name .. "." .. input)
+    came[input], heard[input] = time, true
   end,
   take = function()
     if #outbox == 0 then return nil end

@@ -27,6 +27,13 @@ impl Compiler {
         Compiler { checker: Checker::new(access), ..self }
     }
 
+    /// What keeps the text of a Lua file from being read.
+    pub fn check_lua(&mut self, source: &Source) -> Option<Diagnostic> {
+        let all = Span::new(FileId(0), 0, source.text.len());
+        let error = self.checker.check(&source.text).err()?;
+        Some(crate::model::blocks::syntax_diagnostic(source, all, &error))
+    }
+
     pub fn compile(&mut self, source: Source) -> Result<Program, Rejected> {
         let parsed = parse(&source, FileId(0));
         let broken = parsed.diagnostics.iter().any(Diagnostic::is_error);

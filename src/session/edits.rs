@@ -10,6 +10,7 @@ use std::thread::{Builder, JoinHandle};
 
 use super::compile::{Compiler, Rejected};
 use super::engine_thread::{Commands, Library};
+use super::loader::Unreadable;
 use super::watch::{Saved, Watch, Watched};
 use super::{findings, loader, modules, robots};
 use crate::model::Program;
@@ -96,7 +97,7 @@ impl Desk {
                 Note::Saved(Saved::Text { path, text }) if path == self.file => {
                     self.load(&mut compiler, Source::new(path.display().to_string(), text));
                 }
-                Note::Saved(saved) => self.commands.send(self.told(saved)),
+                Note::Saved(saved) => self.commands.send(self.told(saved, &mut compiler)),
                 Note::Required(path) => {
                     self.required.insert(path);
                     self.watch_all();
@@ -135,18 +136,38 @@ impl Desk {
         self.watch.set_paths(std::iter::once(&self.file).chain(others).map(watched));
     }
 
-    fn told(&self, saved: Saved) -> Command {
-        let (path, trouble) = match saved {
-            Saved::Text { path, .. } => return Command::FileChanged { file: path.display().to_string() },
-            Saved::Back { .. } => return Command::Reject { findings: Vec::new() },
-            Saved::Missing { path } => (path, "the file is gone".to_string()),
-            Saved::Unreadable { path, why } => {
-                let why = why.to_string();
-                let said = why.strip_prefix(&format!("{}: ", path.display())).unwrap_or(&why).to_string();
-                (path, said)
-            }
-        };
-        Command::Reject { findings: vec![of_file(&path, format!("{trouble}; the program goes on"))] }
+    fn told(&self, saved: Saved, compiler: &mut Compiler) -> Command {
+        match saved {
+            Saved::Text { path, text } => self.beside_changed(&path, text, compiler),
+            Saved::Back { .. } => Command::Reject { findings: Vec::new() },
+            Saved::Missing { path } => rejected(of_file(&path, "the file is gone; the program goes on".to_string())),
+            Saved::Unreadable { path, why } => rejected(unreadable(&path, &why)),
+        }
+    }
+
+    /// A required file that isn't Lua any more is not taken over, just as a program that can't be read isn't.
+    fn beside_changed(&self, path: &Path, text: Arc<str>, compiler: &mut Compiler) -> Command {
+        let source = Source::new(path.display().to_string(), text);
+        let mistake = if self.required.contains(path) { compiler.check_lua(&source) } else { None };
+        match mistake {
+            Some(mistake) => Command::Reject { findings: findings::errors_first(&[mistake], &[source]) },
+            None => Command::FileChanged { file: path.display().to_string() },
+        }
+    }
+}
+
+fn rejected(finding: Finding) -> Command {
+    Command::Reject { findings: vec![finding] }
+}
+
+fn unreadable(path: &Path, why: &Unreadable) -> Finding {
+    let said = why.to_string();
+    // It begins with the path, which a finding has of its own.
+    let said = said.strip_prefix(&format!("{}:", path.display())).unwrap_or(&said).trim_start();
+    let finding = of_file(path, format!("{said}; the program goes on"));
+    match *why {
+        Unreadable::NotUtf8 { line, column, .. } => Finding { line, column, ..finding },
+        _ => finding,
     }
 }
 

@@ -8,7 +8,7 @@ use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::time::{Duration, Instant};
 
-use crossterm::event::Event as TerminalEvent;
+use crossterm::event::{Event as TerminalEvent, KeyCode, KeyModifiers};
 use ratatui::layout::Size;
 
 use super::app::{App, Effect, Event, Options};
@@ -216,9 +216,12 @@ impl Live {
             TerminalEvent::Resize(width, height) => Event::Resize(Size { width, height }),
             _ => return Next::Go,
         };
+        let interrupts = matches!(event, Event::Key(key) if key.code == KeyCode::Char('c') && key.modifiers == KeyModifiers::CONTROL);
         for effect in self.app.event(event) {
-            if let Next::End(code) = self.effect(effect) {
-                return Next::End(code);
+            match self.effect(effect) {
+                Next::End(_) if interrupts => return Next::End(ExitCode::from(130)),
+                Next::End(code) => return Next::End(code),
+                Next::Go | Next::Answer => {}
             }
         }
         Next::Answer

@@ -102,7 +102,7 @@ fn q_leaves_everything_as_it_was() {
 fn ctrl_c_and_signals_stop_the_robot_too() {
     let mut user = User::new();
     user.pty.type_in("\x03");
-    user.ends(0);
+    user.ends(130);
     for (signal, code) in [(libc::SIGTERM, 0), (libc::SIGHUP, 0), (libc::SIGINT, 130)] {
         let user = User::new();
         user.signal(signal);

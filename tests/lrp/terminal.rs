@@ -152,7 +152,7 @@ fn ctrl_z_gives_the_terminal_back_until_it_is_continued() {
     assert_eq!(stage.pty.modes(), before);
     stage.pty.type_in("\n");
     stage.sees("<continued>");
-    assert!(stage.pty.is_raw());
+    stage.pty.wait_for("raw mode", |_| stage.pty.is_raw());
     stage.pty.type_in("q");
     stage.sees_restored("it ended");
     assert_eq!(stage.pty.modes(), before);

@@ -39,10 +39,13 @@ fn there_is_no_way_out() {
         "getmetatable(_G).__index = nil",
         "require('os')",
         "coroutine.wrap(function() x = 1 end)()",
+        "string.upper = nil",
+        "math.hidden = 1",
+        "rawset(math, 'hidden', 1)",
     ] {
         fail(&mut lua, code);
     }
-    assert_eq!(eval(&mut lua, "string.upper = nil return ('a'):upper()"), json!("A"));
+    assert_eq!(eval(&mut lua, "('a'):upper() .. string.upper('b')"), json!("AB"));
     assert_eq!(eval(&mut lua, "rawget(_G, 'x')"), json!(null));
 }
 
