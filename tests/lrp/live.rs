@@ -178,3 +178,22 @@ fn a_broken_world_is_told() {
     running.signal(libc::SIGTERM);
     assert_eq!(running.end().0, Some(0));
 }
+
+#[test]
+fn a_required_file_is_live_unless_it_is_broken() {
+    let folder = tempfile::tempdir().unwrap();
+    let program = "(machine m (state s (running [log.info(require('words').now)])))\n(spawn m s)\n";
+    write(folder.path(), "a.lrp", program);
+    write(folder.path(), "words.lua", "return { now = 'first' }\n");
+    let running = Running::start(folder.path(), &["a.lrp"]);
+    let says = |word: &str| {
+        running.wait_for(word, |record| record["kind"] == "log" && record["message"] == word);
+    };
+    says("first");
+    write(folder.path(), "words.lua", "return { now = 'broken'\n");
+    let finding = running.wait_for_kind("reject")["findings"][0].clone();
+    assert!(finding["file"].as_str().unwrap().ends_with("words.lua"), "{finding}");
+    says("first");
+    write(folder.path(), "words.lua", "return { now = 'second' }\n");
+    says("second");
+}
