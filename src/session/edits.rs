@@ -1,7 +1,7 @@
 //! Every save of a program's files becomes a command: its text is compiled here, beside the engine's thread, which only
 //! takes finished programs over. Worlds and required Lua files are watched like the program.
 
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -26,8 +26,8 @@ pub struct Edits {
 
 enum Note {
     Saved(Saved),
-    /// A block has read this Lua file.
-    Required(PathBuf),
+    /// A block has read this Lua file, with this text: another one is news, however soon it comes.
+    Required(Watched),
     End,
 }
 
@@ -46,7 +46,10 @@ impl Heard {
     /// The Lua files of a folder, each reported when it is read.
     pub fn library(&self, folder: PathBuf) -> Library {
         let notes = self.notes.clone();
-        modules::library(folder, move |path| drop(notes.send(Note::Required(path.to_path_buf()))))
+        modules::library(folder, move |path, text| {
+            let known = Watched { path: path.to_path_buf(), text: Some(text.into()) };
+            drop(notes.send(Note::Required(known)));
+        })
     }
 
     /// Loads the first text of `file`, then every save of it; the compiler is made on the thread that uses it. Fails only where no thread can be started.
@@ -62,7 +65,7 @@ impl Heard {
         let watch = Watch::new([known], move |saved| drop(saves.send(Note::Saved(saved))))?;
         let inbox = self.inbox;
         let thread = Builder::new().name("edits".to_string()).spawn(move || {
-            let desk = Desk { file, watch, commands, beside: BTreeSet::new(), required: BTreeSet::new() };
+            let desk = Desk { file, watch, commands, beside: BTreeSet::new(), required: BTreeMap::new() };
             desk.work(first, compiler(), &inbox);
         })?;
         Ok(Edits { notes: self.notes, thread: Some(thread) })
@@ -86,7 +89,7 @@ struct Desk {
     commands: Commands,
     /// Files that the robots read.
     beside: BTreeSet<PathBuf>,
-    required: BTreeSet<PathBuf>,
+    required: BTreeMap<PathBuf, Watched>,
 }
 
 impl Desk {
@@ -98,8 +101,8 @@ impl Desk {
                     self.load(&mut compiler, Source::new(path.display().to_string(), text));
                 }
                 Note::Saved(saved) => self.commands.send(self.told(saved, &mut compiler)),
-                Note::Required(path) => {
-                    self.required.insert(path);
+                Note::Required(known) => {
+                    self.required.insert(known.path.clone(), known);
                     self.watch_all();
                 }
                 Note::End => return,
@@ -132,8 +135,8 @@ impl Desk {
             let text = loader::read(path).ok().map(|source| source.text);
             Watched { path: path.clone(), text }
         };
-        let others = self.beside.iter().chain(&self.required);
-        self.watch.set_paths(std::iter::once(&self.file).chain(others).map(watched));
+        let read = std::iter::once(&self.file).chain(&self.beside).map(watched);
+        self.watch.set_paths(read.chain(self.required.values().cloned()));
     }
 
     fn told(&self, saved: Saved, compiler: &mut Compiler) -> Command {
@@ -148,7 +151,7 @@ impl Desk {
     /// A required file that isn't Lua any more is not taken over, just as a program that can't be read isn't.
     fn beside_changed(&self, path: &Path, text: Arc<str>, compiler: &mut Compiler) -> Command {
         let source = Source::new(path.display().to_string(), text);
-        let mistake = if self.required.contains(path) { compiler.check_lua(&source) } else { None };
+        let mistake = if self.required.contains_key(path) { compiler.check_lua(&source) } else { None };
         match mistake {
             Some(mistake) => Command::Reject { findings: findings::errors_first(&[mistake], &[source]) },
             None => Command::FileChanged { file: path.display().to_string() },

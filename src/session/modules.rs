@@ -4,8 +4,8 @@ use std::path::{Component, Path, PathBuf};
 
 use super::engine_thread::Library;
 
-/// `require "a.b"` reads `a/b.lua` under this folder, and nothing outside it; `read` hears of each file that was read.
-pub fn library(folder: PathBuf, read: impl Fn(&Path) + Send + 'static) -> Library {
+/// `require "a.b"` reads `a/b.lua` under this folder, and nothing outside it; `read` hears of each file that was read, and what.
+pub fn library(folder: PathBuf, read: impl Fn(&Path, &str) + Send + 'static) -> Library {
     Box::new(move |module| {
         let file = PathBuf::from(module.replace('.', "/")).with_extension("lua");
         if module.is_empty() || !file.components().all(|part| matches!(part, Component::Normal(_))) {
@@ -14,7 +14,7 @@ pub fn library(folder: PathBuf, read: impl Fn(&Path) + Send + 'static) -> Librar
         let path = folder.join(file);
         let text =
             std::fs::read_to_string(&path).map_err(|error| format!("{} can't be read: {error}", path.display()))?;
-        read(&path);
+        read(&path, &text);
         Ok(text)
     })
 }

@@ -99,7 +99,7 @@ impl Api {
 }
 
 fn library(written: Written, folder: PathBuf) -> Library {
-    let disk = modules::library(folder.clone(), |_| ());
+    let disk = modules::library(folder.clone(), |_, _| ());
     Box::new(move |module| {
         let path = folder.join(module.replace('.', "/")).with_extension("lua");
         let text = written.borrow().get(&path).cloned();

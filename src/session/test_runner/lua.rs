@@ -61,7 +61,7 @@ impl TestLua {
 
     fn offer_require(&self) -> mlua::Result<()> {
         let loaded = self.lua.create_table()?;
-        let find = modules::library(self.folder.clone(), |_| ());
+        let find = modules::library(self.folder.clone(), |_, _| ());
         let require = self.lua.create_function(move |lua, name: String| {
             let known: Value = loaded.raw_get(&*name)?;
             if !known.is_nil() {
