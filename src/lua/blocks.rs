@@ -2,7 +2,7 @@
 
 use super::bytecode::{self, Kind};
 use super::desk::Chunk;
-use super::{Block, Cell, Lua, Slot, SyntaxError, message, source};
+use super::{Block, Cell, Lua, Slot, SyntaxError, source};
 
 impl Lua {
     /// Makes a block of a text: an expression, or statements. `scope`: the variables it can use, inner last.
@@ -95,11 +95,6 @@ impl Lua {
         {
             chunk.place = Some((file.into(), first_line));
         }
-    }
-
-    /// A text made by a block, with the positions in it as users know them: `x.lrp:14:`. For what leaves Lua by a way of its own.
-    pub fn relocate(&self, text: &str) -> String {
-        message::relocate(text, &self.desk)
     }
 
     /// The variables a block can assign. What it does to a table in a variable isn't among that.

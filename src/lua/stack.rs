@@ -214,15 +214,6 @@ impl Stack {
         self.with(cell, |state| unsafe { Fingerprint::of(state, -1) })
     }
 
-    /// Gives one variable the value of another.
-    pub fn copy(&self, from: u32, to: u32) {
-        // SAFETY: the slots hold variables; setting pops the value.
-        unsafe {
-            ffi::lua_getupvalue(self.state, from as c_int, 1);
-            ffi::lua_setupvalue(self.state, to as c_int, 1);
-        }
-    }
-
     /// About how many bytes a variable's value takes.
     pub fn weight(&self, cell: u32) -> usize {
         // SAFETY: the value is on top.

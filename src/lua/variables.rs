@@ -37,12 +37,7 @@ impl Lua {
         self.stack.set(cell.0, &Value::Null);
     }
 
-    /// Gives one variable the value of another; they share it, if it is a table.
-    pub fn copy(&mut self, from: Cell, to: Cell) {
-        self.stack.copy(from.0, to.0);
-    }
-
-    /// Whether a variable has changed since this or [`note`](Self::note) was last called for it; at first, since it was nil. A table's order
+    /// Whether a variable has changed since this was last called for it; at first, since it was nil. A table's order
     /// doesn't count, nor what is more than four levels deep.
     #[inline]
     pub fn changed(&mut self, cell: Cell) -> bool {
@@ -51,11 +46,6 @@ impl Lua {
             Slot::Variable { seen, .. } => std::mem::replace(seen, now) != now,
             _ => false,
         }
-    }
-
-    /// Takes a variable's value as seen.
-    pub fn note(&mut self, cell: Cell) {
-        self.changed(cell);
     }
 
     /// A variable's value, if it is a number.

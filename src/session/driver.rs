@@ -99,8 +99,6 @@ impl Driver {
                 self.engine.command(command)
             }
             Command::Runstop => {
-                self.stop_all();
-                self.held.clear();
                 let result = self.engine.command(command);
                 self.engine.say(What::Stop { reason: "runstop".to_string() });
                 result
@@ -117,12 +115,10 @@ impl Driver {
 
     /// Brings every robot to a halt, and says so.
     pub fn stop(&mut self, reason: &str, sink: Sink) {
-        self.stop_all();
-        self.engine.say(What::Stop { reason: reason.to_string() });
-        self.hand_over(Delivery::Now, sink);
+        self.say(What::Stop { reason: reason.to_string() }, sink);
     }
 
-    /// Something only the session knows, as a record among the engine's.
+    /// Something only the session knows, as a record among the engine's; a stop halts the robots.
     pub fn say(&mut self, what: What, sink: Sink) {
         self.engine.say(what);
         self.hand_over(Delivery::Now, sink);
@@ -147,12 +143,6 @@ impl Driver {
         }
         if let Some(module) = modules::name(&self.workshop.folder, file) {
             self.engine.forget(&module);
-        }
-    }
-
-    fn stop_all(&mut self) {
-        for bridge in self.robots.iter_mut().filter_map(|robot| robot.bridge.as_mut()) {
-            bridge.stop();
         }
     }
 

@@ -50,8 +50,6 @@ pub struct Options {
 pub enum Event {
     Key(KeyEvent),
     Resize(Size),
-    /// Some real time went by.
-    Tick,
 }
 
 /// What the outer loop is to do.
@@ -186,7 +184,6 @@ impl App {
                 self.options.size = size;
                 Vec::new()
             }
-            Event::Tick => return Vec::new(),
         };
         self.settle();
         self.dirty = true;

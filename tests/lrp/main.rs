@@ -22,6 +22,7 @@ mod plot;
 mod pty;
 mod quiet;
 mod runs;
+mod runstop;
 mod settling;
 mod signals;
 mod stage;

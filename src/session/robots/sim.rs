@@ -205,6 +205,8 @@ impl Bridge for Simulated {
 
     fn stop(&mut self) {
         self.sim.halt();
+        // A halt asked for from another thread is done with: it must not undo what the robot is told later.
+        self.halted.store(false, Ordering::SeqCst);
     }
 
     fn stopper(&self) -> Stopper {
