@@ -3,7 +3,6 @@
 use std::alloc::{GlobalAlloc, Layout, System};
 use std::cell::Cell;
 use std::fmt::Write;
-use std::sync::Arc;
 
 use lrp::model::{Program, resolve};
 use lrp::runtime::{Command, Engine, Options, Time};
@@ -48,7 +47,7 @@ fn started(text: &str) -> Engine {
     let program: Program = resolve(&parsed.tree, source, &[], &mut lrp::lua::Checker::default());
     assert!(program.findings.iter().all(|finding| !finding.is_error()), "{:?}", program.findings);
     let mut engine = Engine::new(Options::default());
-    engine.command(Command::Load(Arc::new(program))).expect("it loads");
+    engine.command(Command::Load(program.into())).expect("it loads");
     engine
 }
 

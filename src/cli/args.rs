@@ -148,7 +148,7 @@ impl RunArgs {
         let clock = if self.virtual_time { Clock::Virtual } else { Clock::Real };
         Setup {
             file: self.file.clone(),
-            options: Options { limits, access, seed: self.seed },
+            options: Options { limits, access, seed: self.seed, ..Options::default() },
             pacing: Pacing { rate: self.rate, clock, until: self.until.map(|time| Time(time.as_micros() as u64)) },
             robots: self.bridge.clone(),
         }

@@ -9,6 +9,9 @@ pub struct Change {
     pub op: Op,
     pub kind: Element,
     pub path: Arc<str>,
+    /// What a renamed element is called now: its new path.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub to: Option<Arc<str>>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -17,6 +20,7 @@ pub enum Op {
     Added,
     Removed,
     Changed,
+    Renamed,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -30,4 +34,6 @@ pub enum Element {
     Transition,
     Spawn,
     Action,
+    /// No change of what it stands in.
+    Breakpoint,
 }

@@ -54,7 +54,7 @@ type Named<T> = Vec<(Arc<str>, T)>;
 fn compare<T, U>(kind: Element, old: Named<T>, new: Named<U>, same: impl Fn(&T, &U) -> bool) -> Vec<Change> {
     let before: HashMap<&str, &T> = old.iter().map(|(path, item)| (&**path, item)).collect();
     let after: HashSet<&str> = new.iter().map(|(path, _)| &**path).collect();
-    let change = |op, path: &Arc<str>| Change { op, kind, path: path.clone() };
+    let change = |op, path: &Arc<str>| Change { op, kind, path: path.clone(), to: None };
     let removed = old.iter().filter(|(path, _)| !after.contains(&**path)).map(|(path, _)| change(Op::Removed, path));
     let rest = new.iter().filter_map(|(path, item)| match before.get(&**path) {
         None => Some(change(Op::Added, path)),
@@ -128,7 +128,7 @@ fn reordered(old: &Program, new: &Program) -> Vec<Change> {
         now.dedup();
         if was != now {
             let path = format!("{}: order out of {}", new[state.machine].path, state.name).into();
-            changes.push(Change { op: Op::Changed, kind: Element::Transition, path });
+            changes.push(Change { op: Op::Changed, kind: Element::Transition, path, to: None });
         }
     }
     changes

@@ -5,13 +5,17 @@ pub mod blocks;
 pub mod change;
 pub mod description;
 pub mod diff;
+pub mod edit;
 pub mod ids;
 mod link;
+pub mod matching;
 pub mod names;
 pub mod program;
 pub mod resolve;
 
 pub use description::Description;
+pub use edit::Edit;
 pub use ids::*;
+pub use matching::Matching;
 pub use program::*;
 pub use resolve::{Robot, resolve};

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use serde_json::Value;
 
+use super::command::{OnEdit, OnError, Saves};
 use super::faults::Faults;
 use super::note::Note;
 use super::plan::Plan;
@@ -21,11 +22,21 @@ pub struct Options {
     pub access: Access,
     /// For `math.random`.
     pub seed: u64,
+    pub on_edit: OnEdit,
+    pub saves: Saves,
+    pub on_error: OnError,
 }
 
 impl Default for Options {
     fn default() -> Self {
-        Options { limits: Limits::default(), access: Access::Sandboxed, seed: 1 }
+        Options {
+            limits: Limits::default(),
+            access: Access::Sandboxed,
+            seed: 1,
+            on_edit: OnEdit::default(),
+            saves: Saves::default(),
+            on_error: OnError::default(),
+        }
     }
 }
 
@@ -51,6 +62,11 @@ pub struct Engine {
     pub(super) step: u64,
     pub(super) now: Time,
     pub(super) paused: bool,
+    pub(super) on_edit: OnEdit,
+    pub(super) saves: Saves,
+    pub(super) on_error: OnError,
+    /// Not taken over yet.
+    pub(super) held: Option<Edit>,
     pub(super) notes: Vec<Note>,
     pub(super) faults: Faults,
     pub(super) changes: super::changes::Changes,
@@ -78,6 +94,10 @@ impl Engine {
             step: 0,
             now: Time::ZERO,
             paused: false,
+            on_edit: options.on_edit,
+            saves: options.saves,
+            on_error: options.on_error,
+            held: None,
             notes: Vec::new(),
             faults: Faults::default(),
             changes: super::changes::Changes::default(),
@@ -182,6 +202,8 @@ impl Engine {
             changes,
             restarted: reason.is_some(),
             reason,
+            again: Vec::new(),
+            discarded: Vec::new(),
             findings: super::findings::findings(program, |finding| !finding.is_error()),
             files: super::findings::files(program),
             program: Some(Arc::clone(program)),

@@ -20,7 +20,7 @@ mod robot;
 mod store;
 pub mod time;
 
-pub use command::Command;
+pub use command::{BreakAt, Breaking, Command, OnEdit, OnError, Saves};
 pub use engine::{Engine, Input, Options};
 pub use obey::Refused;
 pub use record::{Record, What};

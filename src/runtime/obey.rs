@@ -3,13 +3,13 @@
 use std::rc::Rc;
 use std::sync::Arc;
 
-use super::command::Command;
+use super::command::{Command, Saves};
 use super::engine::Engine;
 use super::machine::Spawner;
-use super::record::{Forced, Level, Log, What};
+use super::record::{Forced, Held, Level, Log, What};
 use crate::lua::{Cell, Ran};
 use crate::model::names::Names;
-use crate::model::{StateId, VarId};
+use crate::model::{Edit, StateId, VarId};
 use crate::syntax::nearest::nearest;
 
 /// Why a command had no effect, as a sentence.
@@ -44,7 +44,17 @@ impl Engine {
 
     fn obey(&mut self, command: Command) -> Result<(), Refused> {
         match command {
-            Command::Load(program) => self.load(Arc::unwrap_or_clone(program)),
+            Command::Load(edit) if self.saves == Saves::Hold && !self.program.sources.is_empty() => self.hold(edit),
+            Command::Load(edit) => self.load(edit),
+            Command::ApplyHeld => {
+                if let Some(edit) = self.held.take() {
+                    self.load(edit);
+                }
+            }
+            Command::DropHeld => self.held = None,
+            Command::OnEdit { mode } => self.on_edit = mode,
+            Command::Saves { mode } => self.saves = mode,
+            Command::OnError { mode } => self.on_error = mode,
             Command::Reject { findings } => self.rare(What::Reject { findings }),
             Command::Pause => self.pause("asked for"),
             Command::Runstop => self.pause("runstop"),
@@ -53,9 +63,21 @@ impl Engine {
             Command::TransitionTo { state } => self.force(self.state_called(&state)?, Forced::Transition),
             Command::JumpTo { state } => self.force(self.state_called(&state)?, Forced::Jump),
             Command::Set { var, value } => self.set(&var, &value)?,
-            Command::Step | Command::Rate { .. } | Command::PutAtStart { .. } | Command::FileChanged { .. } => {}
+            Command::Break { .. }
+            | Command::Step
+            | Command::Rate { .. }
+            | Command::PutAtStart { .. }
+            | Command::FileChanged { .. } => {}
         }
         Ok(())
+    }
+
+    fn hold(&mut self, edit: Edit) {
+        let changes = edit.comparison(&self.program).changes.clone();
+        let findings = super::findings::findings(&edit.program, |_| true);
+        let held = Held { changes, restarts: None, again: Vec::new(), discarded: Vec::new(), findings };
+        self.rare(What::Held(held));
+        self.held = Some(edit);
     }
 
     fn pause(&mut self, reason: &str) {
@@ -63,7 +85,7 @@ impl Engine {
             return;
         }
         self.paused = true;
-        self.rare(What::Pause { reason: reason.to_string() });
+        self.rare(What::Pause { reason: reason.to_string(), at: None });
         if let Some(block) = self.program.on_pause {
             self.run(block);
         }

@@ -9,28 +9,30 @@ use super::machine::Spawner;
 use super::plan::Plan;
 use super::record::What;
 use crate::model::blocks::syntax_diagnostic;
-use crate::model::diff::{diff, same_actions, same_block};
+use crate::model::diff::{same_actions, same_block};
 use crate::model::*;
 use crate::syntax::{Code, Diagnostic, Source, Span};
 
 impl Engine {
-    pub(super) fn load(&mut self, mut new: Program) {
+    pub(super) fn load(&mut self, edit: Edit) {
         let old = Arc::clone(&self.program);
         let first = old.sources.is_empty();
-        let changes = if first { Vec::new() } else { diff(&old, &new) };
+        let comparison = edit.comparison(&old);
+        let mut new = edit.program;
+        let changes = if first { Vec::new() } else { comparison.changes.clone() };
         let reason = self.why_restart(&new);
-        self.follow_paths(&new);
-        for uncompiled in self.store.take_over(&old, &new) {
+        self.follow(&comparison.matching, &new);
+        for uncompiled in self.store.take_over(&old, &new, &comparison.matching) {
             let span = new[uncompiled.block].span;
             let finding = syntax_diagnostic(new.source(span), span, &uncompiled.error);
             if !new.findings.iter().any(|known| known.span == finding.span) {
-                new.findings.push(finding);
+                Arc::make_mut(&mut new).findings.push(finding);
             }
         }
         let still = self.faults.edited(self.now, |code, span| moved(&old, &new, code, span));
         self.plan = Rc::new(Plan::of(&new, &self.store));
         self.changes.follow(&new);
-        self.program = Arc::new(new);
+        self.program = new;
         let load = self.load_record(changes, reason.clone());
         self.rare(What::Load(load));
         still.into_iter().for_each(|fault| self.rare(What::Error(fault)));
@@ -64,30 +66,24 @@ impl Engine {
     }
 
     /// From the old program's ids to the new one's; what is gone is no longer there.
-    fn follow_paths(&mut self, new: &Program) {
-        let machines: HashMap<&str, MachineId> =
-            new.machines.iter().enumerate().map(|(i, machine)| (&*machine.path, MachineId(i as u32))).collect();
-        let states: HashMap<&str, StateId> =
-            new.states.iter().enumerate().map(|(i, state)| (&*state.path, StateId(i as u32))).collect();
-        let old = &self.program;
-        let follow = |machine: &MachineId| machines.get(&*old[*machine].path).copied();
+    fn follow(&mut self, matching: &Matching, new: &Program) {
         let mut running: Vec<Option<Running>> = new.machines.iter().map(|_| None).collect();
-        let mut visits = vec![0; new.states.len()];
         for (index, was) in self.running.iter().enumerate() {
             let Some(was) = was else { continue };
-            let (Some(machine), Some(&state)) = (follow(&MachineId(index as u32)), states.get(&*old[was.state].path))
+            let (Some(machine), Some(state)) = (matching.machine(MachineId(index as u32)), matching.state(was.state))
             else {
                 continue;
             };
-            let nested = was.nested.iter().filter_map(follow).collect();
+            let nested = was.nested.iter().filter_map(|&nested| matching.machine(nested)).collect();
             running[machine.index()] = Some(Running { state, entered: was.entered, nested, decided: None });
         }
-        for (state, &count) in old.states.iter().zip(&self.visits) {
-            if let Some(&now) = states.get(&*state.path) {
+        let mut visits = vec![0; new.states.len()];
+        for (index, &count) in self.visits.iter().enumerate() {
+            if let Some(now) = matching.state(StateId(index as u32)) {
                 visits[now.index()] = count;
             }
         }
-        self.tops = self.tops.iter().filter_map(follow).collect();
+        self.tops = self.tops.iter().filter_map(|&machine| matching.machine(machine)).collect();
         self.running = running;
         self.visits = visits;
     }

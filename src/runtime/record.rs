@@ -5,7 +5,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
-use super::command::Command;
+use super::command::{BreakAt, Command};
 use super::time::Time;
 use crate::model::Program;
 pub use crate::model::change::{Change, Element, Op};
@@ -28,6 +28,12 @@ pub enum What {
     /// An edit can't be read; the program that runs goes on.
     Reject {
         findings: Vec<Finding>,
+    },
+    /// An edit waits to be taken over. The next one takes its place.
+    Held(Held),
+    /// All breakpoints, whenever they have changed.
+    Breakpoints {
+        all: Vec<Breakpoint>,
     },
     Command {
         #[serde(flatten)]
@@ -79,8 +85,11 @@ pub enum What {
     },
     Log(Log),
     Error(Fault),
+    /// `at`: the state to look at, where there is one: a breakpoint was met there, or something went wrong.
     Pause {
         reason: String,
+        #[serde(skip_serializing_if = "Option::is_none", default)]
+        at: Option<Path>,
     },
     Resume,
     /// A user moved a machine to a state.
@@ -112,6 +121,8 @@ impl What {
     pub const KINDS: &[&str] = &[
         "load",
         "reject",
+        "held",
+        "breakpoints",
         "command",
         "spawn",
         "enter",
@@ -143,6 +154,12 @@ pub struct Load {
     pub restarted: bool,
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub reason: Option<String>,
+    /// Machines that started again on their own.
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub again: Vec<Path>,
+    /// Machines that run no longer, as there is nothing to start them in.
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub discarded: Vec<Path>,
     /// Warnings and hints of the static checks; errors follow as records of their own.
     #[serde(skip_serializing_if = "Vec::is_empty", default)]
     pub findings: Vec<Finding>,
@@ -150,6 +167,40 @@ pub struct Load {
     /// The program itself, for those in the same process; read from `files` elsewhere.
     #[serde(skip)]
     pub program: Option<Arc<Program>>,
+}
+
+/// What taking a held edit over would do now. Told again when that has changed.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Held {
+    pub changes: Vec<Change>,
+    /// Why the program would start again.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub restarts: Option<String>,
+    /// Machines that would start again on their own.
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub again: Vec<Path>,
+    /// Machines that would run no longer.
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub discarded: Vec<Path>,
+    /// All that the static checks found.
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub findings: Vec<Finding>,
+}
+
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Breakpoint {
+    #[serde(flatten)]
+    pub at: BreakAt,
+    pub by: Setter,
+}
+
+/// Who set a breakpoint.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Setter {
+    /// `(break)` in the program's text.
+    Source,
+    Command,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]

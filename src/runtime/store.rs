@@ -6,7 +6,7 @@ use std::ops::Range;
 use std::sync::Arc;
 
 use crate::lua::{self, Cell, Lua, SyntaxError};
-use crate::model::{Block, BlockId, MachineId, Program, VarId};
+use crate::model::{Block, BlockId, MachineId, Matching, Program, VarId};
 
 pub struct Store {
     pub lua: Lua,
@@ -87,20 +87,22 @@ impl Store {
         compiled.stopped = false;
     }
 
-    /// Takes over a program: variables of the same path keep their cells, blocks that read the same and see the same
+    /// Takes over a program: variables that are still there keep their cells, blocks that read the same and see the same
     /// variables keep their functions.
-    pub fn take_over(&mut self, old: &Program, new: &Program) -> Vec<Uncompiled> {
-        self.take_over_cells(old, new);
+    pub fn take_over(&mut self, old: &Program, new: &Program, matching: &Matching) -> Vec<Uncompiled> {
+        self.take_over_cells(old, new, matching);
         self.take_over_blocks(new)
     }
 
-    fn take_over_cells(&mut self, old: &Program, new: &Program) {
-        let mut kept: HashMap<&str, Cell> =
-            old.vars.iter().zip(&self.cells).map(|(var, &cell)| (&*var.path, cell)).collect();
-        self.cells = new.vars.iter().map(|var| kept.remove(&*var.path).unwrap_or_else(|| self.lua.cell())).collect();
-        for (_, cell) in kept {
-            self.lua.free_cell(cell);
+    fn take_over_cells(&mut self, old: &Program, new: &Program, matching: &Matching) {
+        let mut kept: Vec<Option<Cell>> = vec![None; new.vars.len()];
+        for (index, &cell) in self.cells.iter().enumerate().take(old.vars.len()) {
+            match matching.var(VarId(index as u32)) {
+                Some(now) => kept[now.index()] = Some(cell),
+                None => self.lua.free_cell(cell),
+            }
         }
+        self.cells = kept.into_iter().map(|cell| cell.unwrap_or_else(|| self.lua.cell())).collect();
     }
 
     fn take_over_blocks(&mut self, new: &Program) -> Vec<Uncompiled> {

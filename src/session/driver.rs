@@ -9,7 +9,7 @@ use serde_json::Value;
 use super::findings::errors_first;
 use super::modules;
 use super::robots::{Bridge, Concern, Problems, Stopper, Workshop};
-use crate::model::{self, Description, Program};
+use crate::model::{self, Description, Edit, Program};
 use crate::runtime::record::{BridgeState, Health};
 use crate::runtime::{Command, Engine, Input, Options, Record, Refused, Time, What};
 
@@ -89,7 +89,7 @@ impl Driver {
         );
         let delivery = if held && self.engine.is_paused() { Delivery::Held } else { Delivery::Now };
         let result = match command {
-            Command::Load(program) => self.load(Arc::unwrap_or_clone(program)),
+            Command::Load(edit) => self.load(edit),
             Command::PutAtStart { ref bridge } => {
                 self.put_at_start(bridge);
                 self.engine.command(command)
@@ -155,8 +155,8 @@ impl Driver {
         }
     }
 
-    fn load(&mut self, mut program: Program) -> Result<(), Refused> {
-        let states = self.connect(&mut program);
+    fn load(&mut self, mut edit: Edit) -> Result<(), Refused> {
+        let states = self.connect(&mut edit.program);
         for robot in &self.robots {
             let (description, stale) = match &robot.bridge {
                 Some(bridge) => (bridge.description(), bridge.stale()),
@@ -164,7 +164,7 @@ impl Driver {
             };
             self.engine.describe(&robot.form.name, &description, stale);
         }
-        let result = self.engine.command(Command::Load(Arc::new(program)));
+        let result = self.engine.command(Command::Load(edit));
         for state in states {
             self.engine.say(What::Bridge(state));
         }
@@ -172,7 +172,7 @@ impl Driver {
     }
 
     /// Makes the robots whose form is new or changed; the others stay as they are.
-    fn connect(&mut self, program: &mut Program) -> Vec<BridgeState> {
+    fn connect(&mut self, program: &mut Arc<Program>) -> Vec<BridgeState> {
         let mut old = std::mem::take(&mut self.robots);
         let mut states = Vec::new();
         for form in program.bridges.clone() {
@@ -193,7 +193,7 @@ impl Driver {
         states
     }
 
-    fn make(&self, form: model::Bridge, program: &mut Program) -> (Robot, BridgeState) {
+    fn make(&self, form: model::Bridge, program: &mut Arc<Program>) -> (Robot, BridgeState) {
         match self.workshop.make(&form, program.sources.len() as u16) {
             Ok(bridge) => {
                 let state = bridge.state();
@@ -201,6 +201,7 @@ impl Driver {
             }
             Err(Problems { sources, diagnostics }) => {
                 let message = diagnostics.first().map(|first| first.message.clone());
+                let program = Arc::make_mut(program);
                 program.sources.extend(sources);
                 program.findings.extend(diagnostics);
                 let (bridge, kind) = (form.name.clone(), form.kind.clone());

@@ -115,7 +115,7 @@ impl Desk {
             Ok(program) => {
                 self.beside = self.files_of_robots(&program);
                 self.watch_all();
-                Command::Load(Arc::new(program))
+                Command::Load(program.into())
             }
             Err(Rejected { sources, diagnostics }) => {
                 Command::Reject { findings: findings::errors_first(&diagnostics, &sources) }

@@ -3,7 +3,6 @@
 //! closures in the same order, in the same run. Prints nanoseconds for each change of state, and their ratio.
 
 use std::fmt::Write;
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 use lrp::model::{Program, resolve};
@@ -79,7 +78,7 @@ fn steps(engine: &mut Engine, after: impl Fn(&mut Engine)) {
 
 fn started(program: &str) -> Engine {
     let mut engine = Engine::new(Options::default());
-    engine.command(Command::Load(Arc::new(compiled(program)))).expect("the ring loads");
+    engine.command(Command::Load(compiled(program).into())).expect("the ring loads");
     engine.discard_records();
     engine
 }

@@ -69,6 +69,8 @@ fn kind(what: &What) -> &'static str {
     match what {
         What::Load(_) => "load",
         What::Reject { .. } => "reject",
+        What::Held(_) => "held",
+        What::Breakpoints { .. } => "breakpoints",
         What::Command { .. } => "command",
         What::Spawn { .. } => "spawn",
         What::Enter { .. } => "enter",

@@ -111,7 +111,7 @@ fn the_outer_machine() {
 fn with_a_fault() {
     let mut story = Story::searching();
     story.at(81).fault("attempt to index a nil value (field 'range')", "follower/looking/lookalgo/lookright", 19, 12);
-    story.tell(What::Pause { reason: "an error in lookright".into() });
+    story.tell(What::Pause { reason: "an error in lookright".into(), at: None });
     check_sizes("fault", &story, "4 Down i");
 }
 
@@ -219,7 +219,7 @@ fn a_state_inspected() {
 fn the_robot_stopped_and_lost() {
     let mut story = Story::searching();
     story.at(90).tell(What::Command { command: Command::Runstop });
-    story.tell(What::Pause { reason: "runstop".into() });
+    story.tell(What::Pause { reason: "runstop".into(), at: None });
     story.tell(What::Bridge(BridgeState {
         bridge: "robot".into(),
         kind: "sim".into(),

@@ -1,6 +1,5 @@
 //! A mistake in one block costs that block alone, also among others that are called together with it.
 
-use std::sync::Arc;
 use std::time::Duration;
 
 use lrp::lua::{Checker, Limits};
@@ -16,7 +15,7 @@ fn started(text: &str) -> Engine {
     let program = resolve(&parsed.tree, source, &[], &mut Checker::default());
     let limits = Limits { time: Duration::from_millis(20), ..Limits::default() };
     let mut engine = Engine::new(Options { limits, ..Options::default() });
-    engine.command(Command::Load(Arc::new(program))).expect("it loads");
+    engine.command(Command::Load(program.into())).expect("it loads");
     engine
 }
 

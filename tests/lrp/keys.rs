@@ -36,7 +36,7 @@ fn keys_run_the_program() {
     assert_eq!(press(&mut app, "Ctrl-R"), command(Command::Restart));
     assert_eq!(press(&mut app, "b"), command(Command::PutAtStart { bridge: "robot".into() }));
     let mut story = Story::searching();
-    story.tell(What::Pause { reason: "asked for".into() });
+    story.tell(What::Pause { reason: "asked for".into(), at: None });
     let mut app = screen(80, 24, &story);
     assert_eq!(press(&mut app, "Space"), command(Command::Resume));
     assert_eq!(press(&mut app, "s"), command(Command::Step));

@@ -1,6 +1,6 @@
 //! A record as one readable line: `5 500 enter esc/tock`.
 
-use lrp::runtime::record::{Change, Fault, Finding, Forced, Load, Log, Op, Taken};
+use lrp::runtime::record::{Breakpoint, Change, Fault, Finding, Forced, Held, Load, Log, Op, Taken};
 use lrp::runtime::{Command, Record, What};
 
 /// With a line's end. Texts of programs are left out.
@@ -9,6 +9,11 @@ pub fn line(record: &Record) -> String {
         What::Load(load) => loaded(load),
         What::Reject { findings } => {
             format!("reject{}", findings.iter().map(|it| format!("\n    {}", finding(it))).collect::<String>())
+        }
+        What::Held(held) => waiting(held),
+        What::Breakpoints { all } => {
+            let each = |it: &Breakpoint| format!("\n    {} by {:?}", it.at, it.by).to_lowercase();
+            format!("breakpoints{}", all.iter().map(each).collect::<String>())
         }
         What::Command { command } => format!("command {}", commanded(command)),
         What::Spawn { machine, by: Some(by) } => format!("spawn {machine} by {by}"),
@@ -24,7 +29,8 @@ pub fn line(record: &Record) -> String {
         What::Reply { bridge, name, id, value } => format!("reply {bridge}.{name} #{id} {value}"),
         What::Log(log) => logged(log),
         What::Error(fault) => failed(fault),
-        What::Pause { reason } => format!("pause: {reason}"),
+        What::Pause { reason, at: None } => format!("pause: {reason}"),
+        What::Pause { reason, at: Some(at) } => format!("pause at {at}: {reason}"),
         What::Resume => "resume".into(),
         What::Force { state, how: Forced::Transition } => format!("force {state} by transition"),
         What::Force { state, how: Forced::Jump } => format!("force {state} by jump"),
@@ -42,7 +48,20 @@ fn loaded(load: &Load) -> String {
     assert_eq!(load.restarted, load.reason.is_some());
     let changes: String = load.changes.iter().map(changed).collect();
     let findings: String = load.findings.iter().map(|it| format!("\n    {}", finding(it))).collect();
-    format!("load{reason}{changes}{findings}")
+    let machines = machines(&load.again, &load.discarded);
+    format!("load{reason}{changes}{machines}{findings}")
+}
+
+fn waiting(held: &Held) -> String {
+    let reason = held.restarts.as_ref().map(|reason| format!("; would restart: {reason}")).unwrap_or_default();
+    let changes: String = held.changes.iter().map(changed).collect();
+    let findings: String = held.findings.iter().map(|it| format!("\n    {}", finding(it))).collect();
+    format!("held{reason}{changes}{}{findings}", machines(&held.again, &held.discarded))
+}
+
+fn machines(again: &[std::sync::Arc<str>], discarded: &[std::sync::Arc<str>]) -> String {
+    let again = again.iter().map(|machine| format!("\n    again {machine}"));
+    again.chain(discarded.iter().map(|machine| format!("\n    discarded {machine}"))).collect()
 }
 
 fn changed(change: &Change) -> String {
@@ -50,9 +69,11 @@ fn changed(change: &Change) -> String {
         Op::Added => '+',
         Op::Removed => '-',
         Op::Changed => '~',
+        Op::Renamed => '=',
     };
     let kind = format!("{:?}", change.kind).to_lowercase();
-    format!("\n    {sign}{kind} {}", change.path)
+    let to = change.to.as_ref().map(|to| format!(" to {to}")).unwrap_or_default();
+    format!("\n    {sign}{kind} {}{to}", change.path)
 }
 
 /// `error unknown-state 3:7 message (help)`
@@ -77,6 +98,12 @@ fn commanded(command: &Command) -> String {
         Command::Runstop => "runstop".into(),
         Command::FileChanged { file } => format!("file-changed {file}"),
         Command::PutAtStart { bridge } => format!("put-at-start {bridge}"),
+        Command::OnEdit { mode } => format!("on-edit {mode:?}").to_lowercase(),
+        Command::Saves { mode } => format!("saves {mode:?}").to_lowercase(),
+        Command::ApplyHeld => "apply-held".into(),
+        Command::DropHeld => "drop-held".into(),
+        Command::Break { at, mode } => format!("{} break at {at}", format!("{mode:?}").to_lowercase()),
+        Command::OnError { mode } => format!("on-error {mode:?}").to_lowercase(),
     }
 }
 

@@ -1,7 +1,5 @@
 //! A halt from another thread, and what the robot is told after it.
 
-use std::sync::Arc;
-
 use lrp::runtime::{Command, Options, Time, What};
 use lrp::session::compile::Compiler;
 use lrp::session::driver::Driver;
@@ -16,7 +14,7 @@ fn started() -> Driver {
     let workshop = Workshop { folder: ".".into(), seed: 1, robots: Robots::AsProgrammed };
     let mut driver = Driver::new(Options::default(), workshop);
     let Ok(program) = Compiler::new(Vec::new()).compile(Source::new("a.lrp", PROGRAM)) else { panic!("it compiles") };
-    obey(&mut driver, Command::Load(Arc::new(program)));
+    obey(&mut driver, Command::Load(program.into()));
     driver
 }
 

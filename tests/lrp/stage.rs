@@ -2,7 +2,6 @@
 //! readable lines. Looks at the engine's records only; whether the screen's picture agrees with the engine is asserted.
 
 use std::path::PathBuf;
-use std::sync::Arc;
 use std::time::Duration;
 
 use lrp::lua::Limits;
@@ -72,7 +71,7 @@ impl Stage {
 
     fn save(&mut self, text: String) {
         let command = match self.compiler.compile(Source::new("case.lrp", text)) {
-            Ok(program) => Command::Load(Arc::new(program)),
+            Ok(program) => Command::Load(program.into()),
             Err(Rejected { sources, diagnostics }) => {
                 Command::Reject { findings: findings::errors_first(&diagnostics, &sources) }
             }

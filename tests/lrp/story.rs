@@ -91,12 +91,15 @@ impl Story {
     }
 
     pub fn load(&mut self, program: &Arc<Program>, changes: &[(Op, Element, &str)]) -> &mut Story {
-        let changes = changes.iter().map(|&(op, kind, path)| Change { op, kind, path: path.into() }).collect();
+        let changes =
+            changes.iter().map(|&(op, kind, path)| Change { op, kind, path: path.into(), to: None }).collect();
         let files = vec![File { name: "line_follower.lrp".into(), text: program.sources[0].text.clone() }];
         self.tell(What::Load(Load {
             changes,
             restarted: false,
             reason: None,
+            again: Vec::new(),
+            discarded: Vec::new(),
             findings: Vec::new(),
             files,
             program: Some(program.clone()),

@@ -1,6 +1,5 @@
 //! The picture on the screen is the engine's, at any time; and whatever comes, the screen is drawn.
 
-use lrp::lua::{Access, Limits};
 use lrp::runtime::command::Command;
 use lrp::runtime::engine::{Engine, Options};
 use lrp::runtime::record::*;
@@ -84,7 +83,7 @@ fn an_edit_is_summed_up() {
 #[test]
 fn runstop_shows_until_a_person_resumes() {
     let mut story = Story::searching();
-    story.tell(What::Command { command: Command::Runstop }).tell(What::Pause { reason: "runstop".into() });
+    story.tell(What::Command { command: Command::Runstop }).tell(What::Pause { reason: "runstop".into(), at: None });
     assert_eq!(view_of(&story).mode, Mode::Stopped);
     story.tell(What::Resume);
     assert_eq!(view_of(&story).mode, Mode::Running);
@@ -100,9 +99,9 @@ fn newest(view: &View, count: usize) -> Vec<String> {
 #[test]
 fn what_a_person_does_is_in_the_log() {
     let mut story = Story::searching();
-    story.at(90).tell(What::Pause { reason: "asked for".into() }).tell(What::Resume);
+    story.at(90).tell(What::Pause { reason: "asked for".into(), at: None }).tell(What::Resume);
     story.tell(What::Command { command: Command::PutAtStart { bridge: "robot".into() } });
-    story.tell(What::Pause { reason: "runstop".into() }).tell(What::Stop { reason: "runstop".into() });
+    story.tell(What::Pause { reason: "runstop".into(), at: None }).tell(What::Stop { reason: "runstop".into() });
     story.tell(What::Restart { reason: "asked for".into() }).tell(What::Stop { reason: "restart".into() });
     let view = view_of(&story);
     let lines = ["paused", "goes on", "robot put at its start", "robot stopped: runstop", "restarted"];
@@ -217,12 +216,12 @@ proptest! {
 
     #[test]
     fn the_picture_is_the_engines(deeds in prop::collection::vec(deeds(), 1..30)) {
-        let options = Options { limits: Limits::default(), access: Access::Sandboxed, seed: 1 };
+        let options = Options::default();
         let (mut engine, mut view, mut now) = (Engine::new(options), View::new(10.0), 0);
         for deed in [Deed::Load(0)].into_iter().chain(deeds) {
             match deed {
                 Deed::Load(which) => {
-                    let _ = engine.command(Command::Load(program(&variant(which))));
+                    let _ = engine.command(Command::Load(program(&variant(which)).into()));
                 }
                 Deed::Command(command) => {
                     let _ = engine.command(command);
@@ -334,7 +333,7 @@ fn whats() -> impl Strategy<Value = What> {
         (bridge(), prop::sample::select(vec!["pose", "light"]), values())
             .prop_map(|(bridge, name, value)| What::Input { bridge, name: name.into(), value }),
         (bridge(), paths(), values()).prop_map(|(bridge, name, value)| What::Output { bridge, name, value }),
-        "\\PC{0,20}".prop_map(|reason| What::Pause { reason }),
+        "\\PC{0,20}".prop_map(|reason| What::Pause { reason, at: None }),
         Just(What::Resume),
         "\\PC{0,20}".prop_map(|reason| What::Restart { reason }),
         (any::<f64>(), any::<f64>()).prop_map(|(rate, late)| What::Status { rate, late }),

@@ -95,7 +95,7 @@ impl Bench {
                 config.insert("world".to_string(), world.display().to_string().into());
             }
         }
-        self.command(Command::Load(Arc::new(program)))
+        self.command(Command::Load(program.into()))
     }
 
     /// A test that asks for a robot can't do without it.

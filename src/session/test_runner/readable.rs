@@ -6,7 +6,7 @@ use super::bench::Trouble;
 use super::failure::Situation;
 use super::value::text;
 use crate::runtime::record::{Finding, Forced, Health, Load, Record, Taken, What};
-use crate::runtime::{Command, Engine};
+use crate::runtime::{Breaking, Command, Engine};
 
 const SHOWN: usize = 8;
 
@@ -64,6 +64,8 @@ fn what(what: &What) -> String {
             Some(first) => format!("edit refused: {}:{}:{}: {}", first.file, first.line, first.column, first.message),
             None => "edit refused".to_string(),
         },
+        What::Held(held) => format!("edit held: {} changes", held.changes.len()),
+        What::Breakpoints { all } => format!("{} breakpoints", all.len()),
         What::Command { command: asked } => format!("command {}", command(asked)),
         What::Spawn { machine, by: Some(by) } => format!("spawn {machine} by {by}"),
         What::Spawn { machine, by: None } => format!("spawn {machine}"),
@@ -78,7 +80,7 @@ fn what(what: &What) -> String {
         What::Reply { bridge, name, value, .. } => format!("reply to {bridge}.{name}: {}", text(value)),
         What::Log(log) => format!("log {:?}: {}", log.level, log.message),
         What::Error(fault) => format!("error {}:{}:{}: {}", fault.file, fault.line, fault.column, fault.message),
-        What::Pause { reason } => format!("pause: {reason}"),
+        What::Pause { reason, .. } => format!("pause: {reason}"),
         What::Resume => "resume".to_string(),
         What::Force { state, how: Forced::Transition } => format!("transition by hand to {state}"),
         What::Force { state, how: Forced::Jump } => format!("jump by hand to {state}"),
@@ -141,5 +143,12 @@ fn command(command: &Command) -> String {
         Command::Runstop => "runstop".to_string(),
         Command::FileChanged { file } => format!("file {file} changed"),
         Command::PutAtStart { bridge } => format!("put {bridge} at its start"),
+        Command::OnEdit { mode } => format!("on edit: {mode:?}").to_lowercase(),
+        Command::Saves { mode } => format!("saves: {mode:?}").to_lowercase(),
+        Command::ApplyHeld => "apply the held edit".to_string(),
+        Command::DropHeld => "drop the held edit".to_string(),
+        Command::Break { at, mode: Breaking::Set } => format!("break at {at}"),
+        Command::Break { at, mode: Breaking::Clear } => format!("no break at {at}"),
+        Command::OnError { mode } => format!("on error: {mode:?}").to_lowercase(),
     }
 }

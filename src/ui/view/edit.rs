@@ -52,7 +52,7 @@ pub fn summary(changes: &[Change]) -> String {
 }
 
 fn rank(kind: Element) -> usize {
-    const ORDER: [Element; 8] = [
+    const ORDER: [Element; 9] = [
         Element::Machine,
         Element::State,
         Element::Transition,
@@ -61,6 +61,7 @@ fn rank(kind: Element) -> usize {
         Element::Variable,
         Element::Spawn,
         Element::Bridge,
+        Element::Breakpoint,
     ];
     ORDER.iter().position(|&other| other == kind).unwrap_or(ORDER.len())
 }
@@ -70,6 +71,7 @@ fn phrase(kind: Element, op: Op, count: usize) -> String {
         Op::Added => '+',
         Op::Removed => '-',
         Op::Changed => '~',
+        Op::Renamed => '=',
     };
     let noun = match kind {
         Element::Bridge => "bridge",
@@ -80,6 +82,7 @@ fn phrase(kind: Element, op: Op, count: usize) -> String {
         Element::Transition => "transition",
         Element::Spawn => "spawn",
         Element::Action => "action",
+        Element::Breakpoint => "breakpoint",
     };
     let plural = if count == 1 { "" } else { "s" };
     format!("{sign}{count} {noun}{plural}")

@@ -1,7 +1,6 @@
 //! An example as it runs: five seconds of virtual time at 10 Hz, with a stand-in for its robot. Knows nothing of documents.
 
 use std::path::PathBuf;
-use std::sync::Arc;
 
 use lrp::runtime::{Command, Input, Options, Record, Time, What};
 use lrp::session::compile::{Compiler, Rejected};
@@ -44,7 +43,7 @@ pub fn run(example: &Example) -> Result<Run, String> {
     let mut driver = Driver::new(Options::default(), workshop);
     let mut see = |record: Record| run.see(&record);
     let refused = |refused: lrp::runtime::Refused| refused.0;
-    driver.command(Command::Load(Arc::new(program)), &mut see).map_err(refused)?;
+    driver.command(Command::Load(program.into()), &mut see).map_err(refused)?;
     for step in 1..=STEPS {
         let now = step * PERIOD_MS;
         for (_, input) in feeds.inputs.extract_if(.., |(at, _)| *at <= now) {
