@@ -8,6 +8,7 @@ mod command_line;
 mod docs;
 mod editor;
 mod edits;
+mod found;
 mod frames;
 mod graph;
 mod isolation;
