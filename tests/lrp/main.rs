@@ -24,6 +24,7 @@ mod quiet;
 mod runs;
 mod runstop;
 mod settling;
+mod shelf;
 mod signals;
 mod stage;
 mod story;
