@@ -20,9 +20,9 @@ impl Resolver<'_> {
                 continue;
             }
             here.insert(&var.name.text, var.name.span);
-            if Names::of(&self.program).var(None, &var.name.text).is_none()
-                && let Some(id) = self.declare_var(var, None)
-            {
+            if Names::of(&self.program).var(None, &var.name.text).is_some() {
+                self.ignored.push(&var.init);
+            } else if let Some(id) = self.declare_var(var, None) {
                 self.program.globals.push(id);
             }
         }

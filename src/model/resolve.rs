@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use super::blocks::syntax_diagnostic;
 use super::files::{File, precedence};
 use super::ids::*;
 use super::names::Names;
@@ -37,6 +38,12 @@ pub fn resolve_files(files: &[File], robots: &[Robot], checker: &mut Checker) ->
     let mut program = resolver.program;
     program.findings = resolver.diagnostics;
     super::blocks::resolve_blocks(&mut program, checker);
+    for block in resolver.ignored {
+        if let Err(error) = checker.check(&block.text) {
+            let mistake = syntax_diagnostic(program.source(block.span), block.span, &error);
+            program.findings.push(mistake);
+        }
+    }
     if files.len() > 1 {
         program.globals = super::globals::initialisation_order(&program, &order);
     }
@@ -52,6 +59,8 @@ pub(super) struct Resolver<'t> {
     pub(super) machines: Vec<(MachineId, &'t ast::Machine)>,
     pub(super) states: Vec<(StateId, &'t ast::State)>,
     pub(super) spawns: Vec<&'t ast::Spawn>,
+    /// Blocks of imported files that don't count: they have to be Lua nevertheless.
+    pub(super) ignored: Vec<&'t ast::Block>,
 }
 
 impl<'t> Resolver<'t> {
@@ -79,6 +88,7 @@ impl<'t> Resolver<'t> {
                 Form::Spawn(spawn) if is_program => self.spawns.push(spawn),
                 Form::OnPause(block) if is_program => self.declare_hook(Hook::Pause, block),
                 Form::OnResume(block) if is_program => self.declare_hook(Hook::Resume, block),
+                Form::OnPause(block) | Form::OnResume(block) => self.ignored.push(block),
                 _ => {}
             }
         }

@@ -36,6 +36,7 @@ pub struct Gathering<'a> {
     files: &'a dyn Files,
     /// What was read the last time, by `FileId`: an unchanged text is not parsed again.
     before: &'a [Gathered],
+    /// The folder of the program, canonical.
     root: PathBuf,
     known: HashMap<PathBuf, FileId>,
     pub gathered: Vec<Gathered>,
@@ -48,17 +49,18 @@ pub struct Gathering<'a> {
 impl<'a> Gathering<'a> {
     /// A program with all that it imports. `source`: named by its path.
     pub fn of(source: Source, files: &'a dyn Files, before: &'a [Gathered]) -> Gathering<'a> {
-        let path = files.canonical(Path::new(&*source.name));
+        let path = Path::new(&*source.name);
+        let (canonical, root) = (files.canonical(path), files.canonical(&Path::new(".").join(folder(path))));
         let mut gathering = Gathering {
             files,
             before,
-            root: folder(&path),
+            root,
             known: HashMap::new(),
             gathered: Vec::new(),
             reached: Vec::new(),
             diagnostics: Vec::new(),
         };
-        gathering.add(source, path);
+        gathering.add(source, canonical);
         gathering
     }
 

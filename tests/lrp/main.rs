@@ -10,6 +10,7 @@ mod editor;
 mod edits;
 mod frames;
 mod graph;
+mod imports;
 mod isolation;
 mod keys;
 mod layers;
