@@ -168,6 +168,11 @@ impl Desk {
         for file in read.chain(reached).chain(self.required.values().cloned()) {
             all.entry(file.path.clone()).or_insert(file);
         }
+        // Of one that couldn't be read any text is news, also the one known from before.
+        let unread = |path: &PathBuf| self.taken(path) == Some(None);
+        if all.keys().any(unread) {
+            self.watch.set_paths(all.values().filter(|file| !unread(&file.path)).cloned());
+        }
         self.watch.set_paths(all.into_values());
     }
 

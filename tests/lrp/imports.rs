@@ -159,6 +159,33 @@ fn required_files_are_part_of_the_program() {
 }
 
 #[test]
+fn a_file_reached_through_links_is_one_file() {
+    let files = Files::with(&[
+        ("robot/main.lrp", "(import \"../lib/one.lrp\")\n(import \"link/two.lrp\")\n(spawn one s)\n(spawn two s)\n"),
+        ("lib/one.lrp", &(machine("one", 0) + "(machine own (state s))\n")),
+        ("deep/lib/two.lrp", &("(import \"../one.lrp\")\n".to_string() + &machine("two", 0))),
+        ("deep/one.lrp", "(import \"../other/one.lrp\")\n(export own)\n(machine own (state s))\n"),
+    ]);
+    for (target, link) in [("../deep/lib", "robot/link"), ("lib", "other")] {
+        std::os::unix::fs::symlink(target, files.path().join(link)).unwrap();
+    }
+    let said = lrp(files.path(), &["run", "robot/main.lrp", "--virtual", "--for", "100ms", "--trace", "-"]);
+    let load: Value = serde_json::from_str(said.out.lines().nth(1).unwrap()).unwrap();
+    // What `..` means behind a link is for the system to say.
+    assert_eq!(
+        names(&load),
+        ["robot/main.lrp", "lib/one.lrp", "robot/link/two.lrp", "robot/link/../one.lrp"],
+        "{}",
+        said.out
+    );
+    assert!(load.get("findings").is_none_or(|it| it == &Value::Array(Vec::new())), "{load}");
+    let header: Value = serde_json::from_str(said.out.lines().next().unwrap()).unwrap();
+    assert_eq!(header["files"], load["files"]);
+    let drawn = lrp(files.path(), &["graph", "robot/main.lrp", "..:lib:one.lrp:own"]);
+    assert_eq!(drawn.code, Some(0), "{drawn:?}");
+}
+
+#[test]
 fn checks_and_drawings_see_all_files() {
     let files = Files::with(&[
         ("robot/main.lrp", MAIN),
