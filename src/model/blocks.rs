@@ -8,11 +8,12 @@ use crate::syntax::nearest::nearest;
 use crate::syntax::{Code, Diagnostic, Source, Span};
 
 pub fn resolve_blocks(program: &mut Program, checker: &mut Checker) {
+    checker.next_program();
     let at_hand = checker.at_hand();
     let mut found = Vec::new();
     for index in 0..program.blocks.len() {
         let block = &program.blocks[index];
-        let facts = match checker.check(&block.code) {
+        let facts = match checker.check_block(&block.code) {
             Ok(facts) => facts,
             Err(error) => {
                 let span = error_span(program.source(block.span), block, &error, checker);
