@@ -21,7 +21,10 @@ pub const FEWEST: usize = 8;
 pub enum Edit {
     Nothing,
     /// A number in each of so many blocks, spread over the program: another one for each version from 1 on.
-    Blocks { count: usize, version: u64 },
+    Blocks {
+        count: usize,
+        version: u64,
+    },
     AddedState,
     RenamedState,
     /// The top-level machines in the opposite order.
