@@ -37,6 +37,7 @@ pub(super) struct Resolver<'t> {
     pub(super) diagnostics: Vec<Diagnostic>,
     pub(super) machines: Vec<(MachineId, &'t ast::Machine)>,
     pub(super) states: Vec<(StateId, &'t ast::State)>,
+    named_states: HashMap<(MachineId, Arc<str>), StateId>,
     pub(super) spawns: Vec<&'t ast::Spawn>,
 }
 
@@ -224,11 +225,12 @@ impl<'t> Resolver<'t> {
     }
 
     fn declare_state(&mut self, state: &'t ast::State, machine: MachineId) {
-        if let Some(twin) = self.program.state_named(machine, &state.name.text) {
+        let id = StateId(self.program.states.len() as u32);
+        let twin = *self.named_states.entry((machine, state.name.text.clone())).or_insert(id);
+        if twin != id {
             let first = self.program[twin].name_span;
             return self.duplicate("state", &state.name, first);
         }
-        let id = StateId(self.program.states.len() as u32);
         self.program.states.push(State {
             name: state.name.text.clone(),
             path: join(&self.program[machine].path, &state.name.text),
@@ -251,6 +253,10 @@ impl<'t> Resolver<'t> {
                 self.program.states[id.index()].machines.push(nested);
             }
         }
+    }
+
+    pub(super) fn state_named(&self, machine: MachineId, name: &Arc<str>) -> Option<StateId> {
+        self.named_states.get(&(machine, name.clone())).copied()
     }
 
     fn duplicate(&mut self, what: &str, name: &ast::Name, first: Span) {
