@@ -84,7 +84,7 @@ fn a_configuration_is_data() {
 fn a_block_is_looked_at_once_while_programs_have_it() {
     let mut checker = Checker::default();
     let code = Arc::from("speed = limit");
-    let mut look = |checker: &mut Checker| checker.check_block(&code).expect("this is Lua");
+    let look = |checker: &mut Checker| checker.check_block(&code).expect("this is Lua");
     let first = look(&mut checker);
     assert_eq!(*first, facts(&code));
     for missing_from in [0, 1] {
