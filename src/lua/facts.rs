@@ -4,7 +4,8 @@ use std::sync::LazyLock;
 
 use serde_json::Value;
 
-use super::bytecode::{Kind, Use};
+use super::bytecode::{self, Kind, Use};
+use super::registers::{FieldUse, Gives};
 use super::value::Bounds;
 use super::{Access, Failure, Limits, Lua, SyntaxError, source};
 
@@ -17,10 +18,13 @@ pub struct NameUse {
 }
 
 /// The free names of a block, by line: those it reads and those it assigns, functions in it included.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Facts {
     pub reads: Vec<NameUse>,
     pub writes: Vec<NameUse>,
+    /// Fields of free names, by line; not all can be told.
+    pub fields: Vec<FieldUse>,
+    pub gives: Gives,
 }
 
 /// Looks at blocks with an interpreter of its own.
@@ -53,14 +57,23 @@ impl Checker {
         known_names().iter().chain(besides).copied().collect()
     }
 
-    /// The free names of a block.
+    /// The fields of a library that every block has at hand, sorted; none where that isn't known of a name.
+    pub fn fields(&self, library: &str) -> &'static [&'static str] {
+        match self.access {
+            Access::System if library == "os" => &[],
+            _ => known_fields(library),
+        }
+    }
+
+    /// What can be said of a block.
     ///
     /// # Errors
     /// The text is neither an expression nor statements.
     pub fn check(&mut self, code: &str) -> Result<Facts, SyntaxError> {
         // SAFETY: nothing runs, and there is no memory limit.
-        let (_, uses) = self.lua.unlimited(|lua| unsafe { source::analyse(lua.stack.state(), code) })?;
-        let mut facts = Facts::default();
+        let (_, read) = self.lua.unlimited(|lua| unsafe { source::analyse(lua.stack.state(), code) })?;
+        let bytecode::Read { uses, fields, gives } = read;
+        let mut facts = Facts { fields, gives, ..Facts::default() };
         for Use { name, line, kind } in uses {
             match kind {
                 Kind::Read => facts.reads.push(NameUse { name, line }),

@@ -3,6 +3,7 @@
 
 pub mod blocks;
 pub mod change;
+pub mod checks;
 pub mod description;
 pub mod diff;
 pub mod ids;
@@ -10,6 +11,7 @@ mod link;
 pub mod names;
 pub mod program;
 pub mod resolve;
+mod suggestion;
 
 pub use description::Description;
 pub use ids::*;

@@ -4,6 +4,7 @@ use std::ops::Index;
 use std::sync::Arc;
 
 use super::ids::*;
+use crate::lua::Facts;
 use crate::syntax::{Diagnostic, Source, Span};
 
 /// Elements that refer to something that doesn't exist keep the name as written and are skipped when run.
@@ -21,6 +22,8 @@ pub struct Program {
     pub tops: Vec<MachineId>,
     pub globals: Vec<VarId>,
     pub spawns: Vec<Spawn>,
+    /// Machines that other programs may import.
+    pub exported: Vec<MachineId>,
     pub bridges: Vec<Bridge>,
     pub on_pause: Option<BlockId>,
     pub on_resume: Option<BlockId>,
@@ -128,6 +131,7 @@ pub struct Event {
     pub machine: MachineId,
     pub block: BlockId,
     pub span: Span,
+    pub name_span: Span,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -152,6 +156,10 @@ pub struct Block {
     pub owner: Owner,
     /// The variables it reads or writes, found through its scopes.
     pub uses: Vec<VarId>,
+    pub reads: Vec<VarId>,
+    pub writes: Vec<VarId>,
+    /// What can be said of its text alone; nothing where that isn't Lua.
+    pub facts: Arc<Facts>,
 }
 
 /// The element a block is written in.

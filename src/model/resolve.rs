@@ -59,11 +59,15 @@ impl<'t> Resolver<'t> {
                 Form::OnPause(block) => self.declare_hook(Hook::Pause, block),
                 Form::OnResume(block) => self.declare_hook(Hook::Resume, block),
                 Form::Import(import) => self.unsupported(import.span, "import"),
-                Form::Export(export) => self.check_export(export, tree),
-                Form::Var(_) | Form::Bridge(_) => {}
+                Form::Export(_) | Form::Var(_) | Form::Bridge(_) => {}
             }
         }
-        if self.spawns.is_empty() && !self.program.tops.is_empty() {
+        for form in &tree.forms {
+            if let Form::Export(export) = form {
+                self.export(export);
+            }
+        }
+        if self.spawns.is_empty() && self.program.exported.is_empty() && !self.program.tops.is_empty() {
             self.no_spawn();
         }
     }
@@ -75,14 +79,14 @@ impl<'t> Resolver<'t> {
         );
     }
 
-    fn check_export(&mut self, export: &ast::Export, tree: &Tree) {
-        let known = tree.forms.iter().filter_map(|form| match form {
-            Form::Machine(machine) => Some(&*machine.name.text),
-            _ => None,
-        });
-        let known: Vec<&str> = known.collect();
-        if !known.contains(&&*export.machine.text) {
-            self.unknown(Code::UnknownMachine, "machine", &export.machine, known);
+    fn export(&mut self, export: &ast::Export) {
+        let tops = &self.program.tops;
+        match tops.iter().find(|&&top| self.program[top].name == export.machine.text) {
+            Some(&machine) => self.program.exported.push(machine),
+            None => {
+                let known: Vec<Arc<str>> = tops.iter().map(|&top| self.program[top].name.clone()).collect();
+                self.unknown(Code::UnknownMachine, "machine", &export.machine, known.iter().map(|name| &**name));
+            }
         }
     }
 
@@ -117,7 +121,16 @@ impl<'t> Resolver<'t> {
     pub(super) fn block(&mut self, block: &ast::Block, machine: Option<MachineId>, owner: Owner) -> BlockId {
         let id = BlockId(self.program.blocks.len() as u32);
         let code = block.text.clone();
-        self.program.blocks.push(Block { code, span: block.span, machine, owner, uses: Vec::new() });
+        self.program.blocks.push(Block {
+            code,
+            span: block.span,
+            machine,
+            owner,
+            uses: Vec::new(),
+            reads: Vec::new(),
+            writes: Vec::new(),
+            facts: Arc::default(),
+        });
         id
     }
 
@@ -219,7 +232,14 @@ impl<'t> Resolver<'t> {
         let block = self.block(&event.block, Some(machine), Owner::Event(EventId(self.program.events.len() as u32)));
         let path = join(&self.program[machine].path, &event.name.text);
         let id = EventId(self.program.events.len() as u32);
-        self.program.events.push(Event { name: event.name.text.clone(), path, machine, block, span: event.span });
+        self.program.events.push(Event {
+            name: event.name.text.clone(),
+            path,
+            machine,
+            block,
+            span: event.span,
+            name_span: event.name.span,
+        });
         self.program.machines[machine.index()].events.push(id);
     }
 

@@ -176,21 +176,25 @@ impl Engine {
             self.store.stop(block);
         }
         let span = self.failure_span(block, &failure);
-        match self.found_before(block, &failure) {
+        match self.found_before(block, &failure, span) {
             Some(found) => self.block_fault(block, found.code, found.span, found.message, found.help),
             None => self.block_fault(block, code, span, failure.message, help.map(str::to_string)),
         }
     }
 
     /// An unknown name was reported when the program was read: it is the same fault, and now it has happened.
-    fn found_before(&self, block: BlockId, failure: &Failure) -> Option<Diagnostic> {
-        let name = failure.message.strip_prefix("there is no variable or function '")?.split('\'').next()?;
+    fn found_before(&self, block: BlockId, failure: &Failure, at: Span) -> Option<Diagnostic> {
+        let name = failure.message.strip_prefix("there is no variable or function '");
+        let name = name.and_then(|name| name.split('\'').next());
         let within = self.program[block].span;
         let is_it = |finding: &&Diagnostic| {
             let Span { file, start, end } = finding.span;
-            finding.code == Code::UnknownVariable
-                && (file, start >= within.start, end <= within.end) == (within.file, true, true)
-                && self.program.source(within).slice(finding.span) == name
+            let inside = (file, start >= within.start, end <= within.end) == (within.file, true, true);
+            match finding.code {
+                Code::UnknownVariable => inside && name == Some(self.program.source(within).slice(finding.span)),
+                Code::UnknownField => finding.span == at,
+                _ => false,
+            }
         };
         self.program.findings.iter().find(is_it).cloned()
     }

@@ -1,6 +1,8 @@
 //! From a program's text to a program that can be run, or to what keeps it from being one.
 
+use super::robots::description;
 use crate::lua::{Access, Checker};
+use crate::model::checks::check;
 use crate::model::{Program, Robot, resolve};
 use crate::syntax::parser::parse;
 use crate::syntax::{Code, Diagnostic, FileId, Source, Span};
@@ -50,7 +52,11 @@ impl Compiler {
         program.findings.splice(0..0, parsed.diagnostics);
         match broken {
             true => Err(Rejected { sources: program.sources, diagnostics: program.findings }),
-            false => Ok(program),
+            false => {
+                let offered: Vec<_> = program.bridges.iter().map(description).collect();
+                check(&mut program, &offered, &self.checker);
+                Ok(program)
+            }
         }
     }
 }

@@ -66,6 +66,13 @@ macro_rules! codes {
             pub fn name(self) -> &'static str {
                 match self { $(Code::$variant => $name,)* }
             }
+
+            pub fn named(name: &str) -> Option<Code> {
+                match name {
+                    $($name => Some(Code::$variant),)*
+                    _ => None,
+                }
+            }
         }
     };
 }
@@ -100,6 +107,19 @@ codes! {
     UnknownBridge "unknown-bridge",
     BadBridge "bad-bridge",
     Unsupported "unsupported",
+    UnknownField "unknown-field",
+    // Sound as it stands, and hardly what was meant.
+    UnreachableState "unreachable-state",
+    NeverSpawned "never-spawned",
+    ShadowedTransition "shadowed-transition",
+    NeverRests "never-rests",
+    ReentersItself "reenters-itself",
+    EventAssigns "event-assigns",
+    UnusedEvent "unused-event",
+    UnusedVariable "unused-variable",
+    // Comments that allow a finding.
+    UnknownCode "unknown-code",
+    UnusedAllow "unused-allow",
     // While it runs.
     Runtime "runtime-error",
     NotBoolean "not-boolean",
