@@ -176,27 +176,35 @@ impl Engine {
             self.store.stop(block);
         }
         let span = self.failure_span(block, &failure);
-        match self.found_before(block, &failure, span) {
+        match self.found_before(block, &failure) {
             Some(found) => self.block_fault(block, found.code, found.span, found.message, found.help),
             None => self.block_fault(block, code, span, failure.message, help.map(str::to_string)),
         }
     }
 
     /// An unknown name was reported when the program was read: it is the same fault, and now it has happened.
-    fn found_before(&self, block: BlockId, failure: &Failure, at: Span) -> Option<Diagnostic> {
-        let name = failure.message.strip_prefix("there is no variable or function '");
-        let name = name.and_then(|name| name.split('\'').next());
-        let within = self.program[block].span;
-        let is_it = |finding: &&Diagnostic| {
-            let Span { file, start, end } = finding.span;
-            let inside = (file, start >= within.start, end <= within.end) == (within.file, true, true);
+    fn found_before(&self, block: BlockId, failure: &Failure) -> Option<Diagnostic> {
+        let variable = failure.message.strip_prefix("there is no variable or function '");
+        let variable = variable.and_then(|name| name.split('\'').next());
+        self.found_in(block, |finding| {
+            let name = self.program.source(finding.span).slice(finding.span);
             match finding.code {
-                Code::UnknownVariable => inside && name == Some(self.program.source(within).slice(finding.span)),
-                Code::UnknownField => finding.span == at,
+                Code::UnknownVariable => variable == Some(name),
+                Code::UnknownField => {
+                    ['`', '\''].iter().any(|quote| failure.message.contains(&format!("{quote}{name}{quote}")))
+                }
                 _ => false,
             }
+        })
+    }
+
+    /// What was found in a block when the program was read.
+    fn found_in(&self, block: BlockId, is_it: impl Fn(&Diagnostic) -> bool) -> Option<Diagnostic> {
+        let within = self.program[block].span;
+        let inside = |Span { file, start, end }: Span| {
+            (file, start >= within.start, end <= within.end) == (within.file, true, true)
         };
-        self.program.findings.iter().find(is_it).cloned()
+        self.program.findings.iter().find(|finding| inside(finding.span) && is_it(finding)).cloned()
     }
 
     fn failure_span(&self, block: BlockId, failure: &Failure) -> Span {
@@ -229,6 +237,11 @@ impl Engine {
 
     #[cold]
     fn not_boolean(&mut self, block: BlockId, kind: &str) {
+        let known =
+            |finding: &Diagnostic| matches!(finding.code, Code::EventAssigns | Code::Smalltalk) && finding.is_error();
+        if let Some(found) = self.found_in(block, known) {
+            return self.block_fault(block, found.code, found.span, found.message, found.help);
+        }
         let span = self.program[block].span;
         let (what, help) = match self.program[block].owner {
             Owner::Event(event) => {

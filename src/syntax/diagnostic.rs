@@ -127,5 +127,4 @@ codes! {
     AlreadyRunning "already-running",
     OverTime "over-time",
     OverMemory "over-memory",
-    NoMessageYet "no-message-yet",
 }

@@ -41,7 +41,9 @@ fn loaded(load: &Load) -> String {
     let reason = load.reason.as_ref().map(|reason| format!("; restarts: {reason}")).unwrap_or_default();
     assert_eq!(load.restarted, load.reason.is_some());
     let changes: String = load.changes.iter().map(changed).collect();
-    let findings: String = load.findings.iter().map(|it| format!("\n    {}", finding(it))).collect();
+    // What the checks find has a corpus of its own; here it matters whether anything runs.
+    let findings = load.findings.iter().filter(|it| it.code == "no-spawn");
+    let findings: String = findings.map(|it| format!("\n    {}", finding(it))).collect();
     format!("load{reason}{changes}{findings}")
 }
 
