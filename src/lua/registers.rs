@@ -48,18 +48,17 @@ pub enum Gives {
 }
 
 impl Gives {
-    /// As it is called in a sentence.
+    /// Its type, as Lua calls it.
     pub fn name(self) -> &'static str {
         match self {
-            Gives::Something => "a value",
+            Gives::Something => "something",
             Gives::Nothing => "nothing",
             Gives::Nil => "nil",
-            Gives::True => "true",
-            Gives::False => "false",
-            Gives::Number(_) | Gives::Bits => "a number",
-            Gives::Text => "a string",
-            Gives::Table => "a table",
-            Gives::Function => "a function",
+            Gives::True | Gives::False => "boolean",
+            Gives::Number(_) | Gives::Bits => "number",
+            Gives::Text => "string",
+            Gives::Table => "table",
+            Gives::Function => "function",
         }
     }
 }

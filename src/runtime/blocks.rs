@@ -191,7 +191,8 @@ impl Engine {
             match finding.code {
                 Code::UnknownVariable => variable == Some(name),
                 Code::UnknownField => {
-                    ['`', '\''].iter().any(|quote| failure.message.contains(&format!("{quote}{name}{quote}")))
+                    let told = [format!("`{name}`"), format!(".{name}`"), format!("'{name}'")];
+                    told.iter().any(|told| failure.message.contains(told))
                 }
                 _ => false,
             }

@@ -1,7 +1,7 @@
 //! Comments that allow a finding, and what is wrong with those comments themselves.
 
-use crate::model::suggestion::suggestion;
 use crate::syntax::allow::{Allow, allows};
+use crate::syntax::nearest::nearest;
 use crate::syntax::{Code, Diagnostic, FileId, Source};
 
 pub struct Allowed {
@@ -46,10 +46,13 @@ impl Allowed {
     }
 
     pub fn unknown(&self) -> impl Iterator<Item = Diagnostic> + '_ {
-        let names: Vec<&str> = Code::ALL.iter().map(|code| code.name()).collect();
-        self.unknown.iter().map(move |allow| {
+        self.unknown.iter().map(|allow| {
+            let help = match nearest(&allow.code, Code::ALL.iter().map(|code| code.name())) {
+                Some(near) => format!("did you mean `{near}`?"),
+                None => "`lrp check --explain` lists the codes".to_string(),
+            };
             Diagnostic::warning(Code::UnknownCode, allow.span, format!("no finding has the code `{}`", allow.code))
-                .help(format!("{}; `lrp check --explain` lists them", suggestion(&allow.code, &names)))
+                .help(help)
         })
     }
 
@@ -58,8 +61,8 @@ impl Allowed {
         unused.map(|(allow, code, _)| {
             let message = format!("this allows `{}`, but there is nothing of that kind to allow", code.name());
             let help = match allow.form {
-                Some(_) => "remove it: it would hide the next one",
-                None => "it stands for the form that follows it, and none does: put it before the form",
+                Some(_) => "it stands for the form after it: put it before the one that is meant, or remove it",
+                None => "it stands for the form after it, and none follows: put it before the one that is meant",
             };
             Diagnostic::hint(Code::UnusedAllow, allow.span, message).help(help)
         })

@@ -55,7 +55,8 @@ const OUTSIDE: &[&str] = &["difftime", "execute", "exit", "getenv", "remove", "r
 
 fn library(used: &FieldUse, known: &[&str]) -> Option<Wrong> {
     let (name, [field]) = (&used.name, used.fields.as_slice()) else { return None };
-    if known.is_empty() || used.kind == FieldKind::Given {
+    let right = used.kind != FieldKind::Write && known.contains(&field.as_str());
+    if known.is_empty() || right || used.kind == FieldKind::Given {
         return None;
     }
     if used.kind == FieldKind::Write {
@@ -67,20 +68,19 @@ fn library(used: &FieldUse, known: &[&str]) -> Option<Wrong> {
         true => "blocks can't reach files and processes; `--allow-system` lets them use all of `os`".to_string(),
         false => suggestion(field, known),
     };
-    (!known.contains(&field.as_str())).then(|| Wrong { message: format!("`{name}` has no field `{field}`"), help })
+    Some(Wrong { message: format!("`{name}` has no field `{field}`"), help })
 }
 
 fn robot(used: &FieldUse, offer: &Description) -> Option<Wrong> {
     let (port, inner) = used.fields.split_first()?;
-    let name = format!("{}.{port}", used.name);
     match used.kind {
         FieldKind::Read if inner.is_empty() => unknown_port(used, port, offer),
-        FieldKind::Read => missing(&name, &offer.input(port)?.message, inner),
-        FieldKind::Given => missing(&name, &offer.output(port)?.message, inner),
+        FieldKind::Read => missing(used, &offer.input(port)?.message, inner),
+        FieldKind::Given => missing(used, &offer.output(port)?.message, inner),
         FieldKind::Method => no_method(used, port, offer).filter(|_| inner.is_empty()),
         FieldKind::Write if offer.output(port).is_some() && inner.is_empty() => Some(Wrong {
-            message: format!("`{name}` is an output and can't be assigned"),
-            help: format!("call it to send: `{name}{{ .. }}`"),
+            message: format!("`{}.{port}` is an output and can't be assigned", used.name),
+            help: format!("call it to send: `{}.{port}{{ .. }}`", used.name),
         }),
         FieldKind::Write => unknown_port(used, port, offer),
     }
@@ -91,10 +91,9 @@ fn names(ports: &[Port]) -> Vec<&str> {
 }
 
 fn unknown_port(used: &FieldUse, port: &str, offer: &Description) -> Option<Wrong> {
-    let calls = offer.calls.iter().map(|call| call.name.as_str());
-    let known: Vec<&str> =
-        names(&offer.inputs).into_iter().chain(names(&offer.outputs)).chain(calls).chain(["age"]).collect();
-    if known.contains(&port) {
+    let ports = offer.inputs.iter().chain(&offer.outputs).map(|port| port.name.as_str());
+    let known = ports.chain(offer.calls.iter().map(|call| call.name.as_str())).chain(["age"]);
+    if known.clone().any(|name| name == port) {
         return None;
     }
     let there = format!("inputs: {}; outputs: {}", listed(&names(&offer.inputs)), listed(&names(&offer.outputs)));
@@ -116,22 +115,18 @@ fn no_method(used: &FieldUse, method: &str, offer: &Description) -> Option<Wrong
     Some(Wrong { message: format!("`{name}` has no method `{method}`"), help })
 }
 
-/// The last of these fields, where the message around it has others.
-fn missing(path: &str, message: &Value, fields: &[String]) -> Option<Wrong> {
+/// The last of the fields, where the message around it has others.
+fn missing(used: &FieldUse, message: &Value, fields: &[String]) -> Option<Wrong> {
     let (last, before) = fields.split_last()?;
-    let mut around = message;
-    let mut path = path.to_string();
-    for field in before {
-        around = around.get(field)?;
-        path = format!("{path}.{field}");
-    }
-    let known: Vec<&str> = around.as_object()?.keys().map(String::as_str).collect();
-    if known.is_empty() || known.contains(&last.as_str()) {
+    let around = before.iter().try_fold(message, |around, field| around.get(field))?.as_object()?;
+    if around.is_empty() || around.contains_key(last) {
         return None;
     }
+    let known: Vec<&str> = around.keys().map(String::as_str).collect();
     let help = match nearest(last, known.iter().copied()) {
         Some(near) => format!("did you mean `{near}`? it has: {}", listed(&known)),
         None => format!("it has: {}", listed(&known)),
     };
-    Some(Wrong { message: format!("`{path}` has no field `{last}`"), help })
+    let path = used.fields[..used.fields.len() - 1].join(".");
+    Some(Wrong { message: format!("`{}.{path}` has no field `{last}`", used.name), help })
 }

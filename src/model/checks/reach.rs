@@ -26,7 +26,7 @@ pub fn unreachable_state(program: &Program) -> Vec<Diagnostic> {
     for &state in roots.chain(&lost) {
         if !told[state.index()] {
             let behind = follow(program, state, &mut told);
-            let by = if led_to[state.index()] { "nothing but what lies behind it" } else { "nothing" };
+            let by = if led_to[state.index()] { "nothing but what comes after it" } else { "nothing" };
             found.push(unreachable(program, state, by, &behind[1..]));
         }
     }
@@ -37,8 +37,8 @@ fn unreachable(program: &Program, state: StateId, by: &str, behind: &[StateId]) 
     let name = &program[state].name;
     let nor = match behind {
         [] => String::new(),
-        [other] => format!(", nor is `{}` behind it", program[*other].name),
-        others => format!(", nor are the {} states behind it", others.len()),
+        [other] => format!("; nor is `{}` after it", program[*other].name),
+        others => format!("; nor are the {} states after it", others.len()),
     };
     let message = format!("state `{name}` is never entered, as {by} leads there{nor}");
     Diagnostic::warning(Code::UnreachableState, program[state].name_span, message)

@@ -20,11 +20,11 @@ pub fn not_milliseconds(program: &Program) -> Vec<Diagnostic> {
         }
         Trigger::AfterVar(var) if !written[var.index()] => {
             let var = &program[var];
-            let kind = no_number(program[var.init].facts.gives)?;
+            no_number(program[var.init].facts.gives)?;
             let message =
                 format!("timeout `{}` is not a number of milliseconds; the transition is not taken", var.name);
             let error = Diagnostic::error(Code::NotMilliseconds, transition.span, message);
-            Some(error.also(var.span, format!("its value is {kind}")).help(help))
+            Some(error.also(program[var.init].span, "this is its value").help(help))
         }
         _ => None,
     };
