@@ -15,7 +15,7 @@ impl Lua {
 
     fn compile_unlimited(&mut self, code: &str, scope: &[(&str, Cell)]) -> Result<Block, SyntaxError> {
         // SAFETY: nothing runs, and there is no memory limit.
-        let (form, uses) = unsafe { source::analyse(self.stack.state(), code)? };
+        let (form, bytecode::Read { uses, .. }) = unsafe { source::analyse(self.stack.state(), code)? };
         let bound = self.bind(&uses, scope)?;
         let names: Vec<_> = bound.iter().map(|&(name, _)| name).collect();
         self.chunks += 1;

@@ -4,8 +4,9 @@ use std::sync::{Arc, LazyLock};
 
 use serde_json::Value;
 
-use super::bytecode::{Kind, Use};
+use super::bytecode::{self, Kind, Use};
 use super::known::Known;
+use super::registers::{FieldUse, Gives};
 use super::value::Bounds;
 use super::{Access, Failure, Limits, Lua, SyntaxError, source};
 
@@ -18,10 +19,13 @@ pub struct NameUse {
 }
 
 /// The free names of a block, by line: those it reads and those it assigns, functions in it included.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Facts {
     pub reads: Vec<NameUse>,
     pub writes: Vec<NameUse>,
+    /// Fields of free names, by line; not all can be told.
+    pub fields: Vec<FieldUse>,
+    pub gives: Gives,
 }
 
 /// Looks at blocks with an interpreter of its own.
@@ -60,7 +64,7 @@ impl Checker {
         self.known.next_program();
     }
 
-    /// The free names of a block of the program; one that is known isn't looked at again.
+    /// What can be said of a block of the program; one that is known isn't looked at again.
     ///
     /// # Errors
     /// As for `check`.
@@ -73,14 +77,23 @@ impl Checker {
         Ok(facts)
     }
 
-    /// The free names of a block.
+    /// The fields of a library that every block has at hand, sorted; none where that isn't known of a name.
+    pub fn fields(&self, library: &str) -> &'static [&'static str] {
+        match self.access {
+            Access::System if library == "os" => &[],
+            _ => known_fields(library),
+        }
+    }
+
+    /// What can be said of a block.
     ///
     /// # Errors
     /// The text is neither an expression nor statements.
     pub fn check(&mut self, code: &str) -> Result<Facts, SyntaxError> {
         // SAFETY: nothing runs, and there is no memory limit.
-        let (_, uses) = self.lua.unlimited(|lua| unsafe { source::analyse(lua.stack.state(), code) })?;
-        let mut facts = Facts::default();
+        let (_, read) = self.lua.unlimited(|lua| unsafe { source::analyse(lua.stack.state(), code) })?;
+        let bytecode::Read { uses, fields, gives } = read;
+        let mut facts = Facts { fields, gives, ..Facts::default() };
         for Use { name, line, kind } in uses {
             match kind {
                 Kind::Read => facts.reads.push(NameUse { name, line }),

@@ -22,16 +22,16 @@ pub fn resolve_blocks(program: &mut Program, checker: &mut Checker) {
             }
         };
         let names = Names::of(program);
-        let mut uses = Vec::new();
+        let (mut reads, mut writes) = (Vec::new(), Vec::new());
         let mut unknown: Vec<&str> = Vec::new();
-        for (name, access) in facts
-            .reads
-            .iter()
-            .map(|name| (name, Access::Read))
-            .chain(facts.writes.iter().map(|name| (name, Access::Write)))
-        {
+        let read = facts.reads.iter().map(|name| (name, Access::Read));
+        for (name, access) in read.chain(facts.writes.iter().map(|name| (name, Access::Write))) {
+            let known = match access {
+                Access::Read => &mut reads,
+                Access::Write => &mut writes,
+            };
             match names.var(block.machine, &name.name) {
-                Some(var) if !uses.contains(&var) => uses.push(var),
+                Some(var) if !known.contains(&var) => known.push(var),
                 Some(_) => {}
                 None if unknown.contains(&&*name.name) => {}
                 None => {
@@ -40,7 +40,9 @@ pub fn resolve_blocks(program: &mut Program, checker: &mut Checker) {
                 }
             }
         }
-        program.blocks[index].uses = uses;
+        let block = &mut program.blocks[index];
+        block.uses = reads.iter().copied().chain(writes.iter().copied().filter(|var| !reads.contains(var))).collect();
+        (block.reads, block.writes, block.facts) = (reads, writes, facts);
     }
     program.findings.extend(found);
 }

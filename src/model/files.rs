@@ -125,6 +125,11 @@ impl Resolver<'_> {
             let help = "it works, as each file is read once; move what both need into a file of its own";
             self.diagnostics.push(Diagnostic::warning(Code::ImportCycle, span, message).help(help));
         }
+        for machine in exported.into_iter().flatten() {
+            if !self.program.exported.contains(&machine) {
+                self.program.exported.push(machine);
+            }
+        }
         self.check_spawns();
     }
 

@@ -6,12 +6,9 @@ use super::ids::*;
 use super::names::Names;
 use super::program::*;
 use super::resolve::Resolver;
+use super::suggestion::suggestion;
 use crate::syntax::ast::{self, MachineItem, StateItem};
-use crate::syntax::nearest::nearest;
 use crate::syntax::{Code, Diagnostic};
-
-/// Names listed at most where none is near to the one that was meant.
-const LISTED: usize = 8;
 
 impl Resolver<'_> {
     pub(super) fn link(&mut self) {
@@ -255,12 +252,7 @@ impl Resolver<'_> {
         known: impl IntoIterator<Item = &'a str>,
     ) {
         let known: Vec<&str> = known.into_iter().collect();
-        let help = match nearest(&name.text, known.iter().copied()) {
-            Some(near) => format!("did you mean `{near}`?"),
-            None if known.is_empty() => "there is none here yet".to_string(),
-            None if known.len() <= LISTED => format!("there is: {}", known.join(", ")),
-            None => format!("there is: {}, and {} more", known[..LISTED].join(", "), known.len() - LISTED),
-        };
+        let help = suggestion(&name.text, &known);
         let article = if what.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
         let message = format!("`{}` is not {article} {what}", name.text);
         self.diagnostics.push(Diagnostic::error(code, name.span, message).help(help));

@@ -4,6 +4,7 @@
 pub mod blocks;
 mod bridges;
 pub mod change;
+pub mod checks;
 pub mod description;
 pub mod diff;
 pub mod edit;
@@ -16,6 +17,7 @@ pub mod modules;
 pub mod names;
 pub mod program;
 pub mod resolve;
+mod suggestion;
 
 pub use description::Description;
 pub use edit::Edit;

@@ -4,6 +4,7 @@ use std::ops::Index;
 use std::sync::Arc;
 
 use super::ids::*;
+use crate::lua::Facts;
 use crate::syntax::{Diagnostic, FileId, Source, Span};
 
 /// Elements that refer to something that doesn't exist keep the name as written and are skipped when run.
@@ -25,6 +26,8 @@ pub struct Program {
     /// In the order they are initialised.
     pub globals: Vec<VarId>,
     pub spawns: Vec<Spawn>,
+    /// Machines that the program and the files it imports let others import.
+    pub exported: Vec<MachineId>,
     pub bridges: Vec<Bridge>,
     pub on_pause: Option<BlockId>,
     pub on_resume: Option<BlockId>,
@@ -132,6 +135,7 @@ pub struct Event {
     pub machine: MachineId,
     pub block: BlockId,
     pub span: Span,
+    pub name_span: Span,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -156,6 +160,10 @@ pub struct Block {
     pub owner: Owner,
     /// The variables it reads or writes, found through its scopes.
     pub uses: Vec<VarId>,
+    pub reads: Vec<VarId>,
+    pub writes: Vec<VarId>,
+    /// What can be said of its text alone; nothing where that isn't Lua.
+    pub facts: Arc<Facts>,
     /// The Lua files it requires by a literal name, also through other ones; sorted.
     pub requires: Vec<ModuleId>,
 }

@@ -137,6 +137,9 @@ impl<'t> Resolver<'t> {
             owner,
             uses: Vec::new(),
             requires: Vec::new(),
+            reads: Vec::new(),
+            writes: Vec::new(),
+            facts: Arc::default(),
         });
         id
     }
@@ -241,7 +244,14 @@ impl<'t> Resolver<'t> {
         let block = self.block(&event.block, Some(machine), Owner::Event(EventId(self.program.events.len() as u32)));
         let path = join(&self.program[machine].path, &event.name.text);
         let id = EventId(self.program.events.len() as u32);
-        self.program.events.push(Event { name: event.name.text.clone(), path, machine, block, span: event.span });
+        self.program.events.push(Event {
+            name: event.name.text.clone(),
+            path,
+            machine,
+            block,
+            span: event.span,
+            name_span: event.name.span,
+        });
         self.program.machines[machine.index()].events.push(id);
     }
 

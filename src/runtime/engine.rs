@@ -84,7 +84,7 @@ pub(super) struct Running {
 
 impl Engine {
     pub fn new(options: Options) -> Engine {
-        Engine {
+        let mut engine = Engine {
             program: Arc::default(),
             plan: Rc::default(),
             store: Store::new(Lua::new(options.limits, options.access, options.seed)),
@@ -103,7 +103,9 @@ impl Engine {
             notes: Vec::new(),
             faults: Faults::default(),
             changes: super::changes::Changes::default(),
-        }
+        };
+        engine.library(|name| Err(format!("module '{name}' is not found")));
+        engine
     }
 
     /// Makes a robot known to all blocks under its name, or changes what it offers.

@@ -7,9 +7,11 @@ use super::files::{Disk, Files};
 use super::gather::{Gathered, Gathering};
 use super::live::folder;
 use super::modules;
+use super::robots::description;
 use super::watch::Watched;
 use crate::lua::{Access, Checker};
 use crate::model::blocks::syntax_diagnostic;
+use crate::model::checks::check;
 use crate::model::modules::collect;
 use crate::model::{File, Program, Robot, resolve_files};
 use crate::syntax::{Code, Diagnostic, FileId, Source, Span};
@@ -90,7 +92,11 @@ impl Compiler {
         program.findings.splice(0..0, found);
         match broken {
             true => Err(Rejected { sources: program.sources, diagnostics: program.findings }),
-            false => Ok(program),
+            false => {
+                let offered: Vec<_> = program.bridges.iter().map(description).collect();
+                check(&mut program, &offered, &self.checker);
+                Ok(program)
+            }
         }
     }
 

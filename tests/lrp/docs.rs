@@ -24,8 +24,9 @@ fn every_example_does_what_the_page_says() {
 
 fn judge(example: &Example) -> Result<(), String> {
     let run = run::run(example).map_err(|why| format!("{}: {why}", example.place))?;
-    let (errors, faults) = (run.errors.join("\n"), run.faults.join("\n"));
+    let (errors, faults, remarks) = (run.errors.join("\n"), run.faults.join("\n"), run.remarks.join("\n"));
     match example.kind {
+        Kind::Sound if !remarks.is_empty() => return Err(format!("{}: {remarks}", example.place)),
         Kind::Sound if !errors.is_empty() || !faults.is_empty() => {
             return Err(format!("{}: {errors}\n{faults}", example.place));
         }

@@ -191,7 +191,7 @@ fn checks_and_drawings_see_all_files() {
         ("robot/main.lrp", MAIN),
         (
             "lib/one.lrp",
-            "(export one)\n(machine one (state s (onentry (spawn two t))))\n(machine two (state t) (state u))\n",
+            "(export one)\n(machine one (state s (onentry (spawn two t))))\n(machine two (state t) (state u) (on [now() > 500] t -> u))\n",
         ),
     ]);
     let said = lrp(files.path(), &["check", "robot/main.lrp"]);

@@ -4,6 +4,7 @@ mod bad_input;
 mod behaviors;
 mod binary;
 mod checks;
+mod codes;
 mod command_line;
 mod docs;
 mod editor;

@@ -83,6 +83,11 @@ pub fn examples() -> Vec<Example> {
                 "lrp" => Some(Kind::Sound),
                 "lrp broken" => Some(Kind::Broken),
                 "lrp faulty" => Some(Kind::Faulty),
+                // In docs/codes.md, with a test of their own.
+                "lrp wrong" => {
+                    follows = false;
+                    continue;
+                }
                 "trace" => None,
                 info => {
                     assert!(!info.starts_with("lrp"), "{}: no such fence: {info}", fence.place);

@@ -18,6 +18,8 @@ const STEPS: u64 = 50;
 pub struct Run {
     /// What was wrong before it ran.
     pub errors: Vec<String>,
+    /// What else the checks said.
+    pub remarks: Vec<String>,
     pub faults: Vec<String>,
     /// `500 enter esc/tock`
     pub lines: Vec<String>,
@@ -40,7 +42,7 @@ pub fn run(example: &Example) -> Result<Run, String> {
         Ok(program) => program,
         Err(Rejected { diagnostics, .. }) => return Ok(Run { errors: errors(&diagnostics), ..Run::default() }),
     };
-    let mut run = Run { errors: errors(&program.findings), ..Run::default() };
+    let mut run = Run { errors: errors(&program.findings), remarks: remarks(&program.findings), ..Run::default() };
     let workshop = Workshop { folder: PathBuf::new(), seed: 1, robots: Robots::Fake };
     let mut driver = Driver::new(Options::default(), workshop);
     let mut see = |record: Record| run.see(&record);
@@ -62,8 +64,15 @@ pub fn run(example: &Example) -> Result<Run, String> {
 }
 
 fn errors(diagnostics: &[Diagnostic]) -> Vec<String> {
-    let errors = diagnostics.iter().filter(|diagnostic| diagnostic.is_error());
-    errors.map(|diagnostic| format!("error[{}]: {}", diagnostic.code.name(), diagnostic.message)).collect()
+    diagnostics.iter().filter(|diagnostic| diagnostic.is_error()).map(|error| told("error", error)).collect()
+}
+
+fn remarks(diagnostics: &[Diagnostic]) -> Vec<String> {
+    diagnostics.iter().filter(|diagnostic| !diagnostic.is_error()).map(|remark| told("remark", remark)).collect()
+}
+
+fn told(kind: &str, diagnostic: &Diagnostic) -> String {
+    format!("{kind}[{}]: {}", diagnostic.code.name(), diagnostic.message)
 }
 
 impl Feeds {
