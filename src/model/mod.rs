@@ -2,6 +2,7 @@
 //! Knows nothing of running one.
 
 pub mod blocks;
+pub mod breakpoints;
 pub mod change;
 pub mod description;
 pub mod diff;

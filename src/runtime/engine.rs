@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use serde_json::Value;
 
+use super::breakpoints::Breakpoints;
 use super::command::{OnEdit, OnError, Saves};
 use super::faults::Faults;
 use super::note::Note;
@@ -70,6 +71,7 @@ pub struct Engine {
     pub(super) notes: Vec<Note>,
     pub(super) faults: Faults,
     pub(super) changes: super::changes::Changes,
+    pub(super) breakpoints: Breakpoints,
 }
 
 /// A machine that runs: where it is and what it has spawned there.
@@ -101,6 +103,7 @@ impl Engine {
             notes: Vec::new(),
             faults: Faults::default(),
             changes: super::changes::Changes::default(),
+            breakpoints: Breakpoints::default(),
         }
     }
 
@@ -134,7 +137,9 @@ impl Engine {
         for index in 0..self.tops.len() {
             self.step_machine(&plan, self.tops[index]);
         }
+        self.test_conditions();
         self.finish();
+        self.pause_if_met();
     }
 
     /// What robots said; blocks see it from now on.
@@ -186,6 +191,7 @@ impl Engine {
     /// Hands over what happened since the last call, in order.
     pub fn drain(&mut self, mut sink: impl FnMut(Record)) {
         let (step, t) = (self.step, self.now);
+        self.breakpoints.paused = false;
         for note in self.notes.drain(..) {
             sink(Record { step, t, what: note.spell_out(&self.program) });
         }
@@ -193,6 +199,7 @@ impl Engine {
 
     /// Forgets what happened since the last `drain`: for those who only want the machines to run.
     pub fn discard_records(&mut self) {
+        self.breakpoints.paused = false;
         self.notes.clear();
     }
 

@@ -62,6 +62,9 @@ impl Engine {
     /// Enters a state; what its onentry spawns on the way starts in the state on the way.
     fn enter_on_way(&mut self, plan: &Plan, machine: MachineId, state: StateId, then: &[(MachineId, StateId)]) {
         self.arrive(machine, state);
+        if self.breakpoints.are_armed {
+            self.meet_state(state);
+        }
         let next = then.first().copied();
         for &item in plan.onentry(state) {
             match item {

@@ -35,6 +35,7 @@ impl Engine {
         self.program = new;
         let load = self.load_record(changes, reason.clone());
         self.rare(What::Load(load));
+        self.follow_breakpoints(&old, &comparison.matching);
         still.into_iter().for_each(|fault| self.rare(What::Error(fault)));
         self.report_findings();
         match reason {
