@@ -7,7 +7,7 @@ use clap::{ArgAction, Parser, Subcommand, ValueEnum};
 
 use crate::lua::{Access, Limits};
 use crate::model::Robot;
-use crate::runtime::{Options, Time};
+use crate::runtime::{OnError, Options, Time};
 use crate::session::engine_thread::Pacing;
 use crate::session::live::Setup;
 use crate::session::pace::Rate;
@@ -97,6 +97,9 @@ pub struct RunArgs {
     /// What an edit does to an active state that it changes: restart begins the program again
     #[arg(long, value_name = "HOW", value_enum, default_value_t = OnEdit::Restart)]
     pub on_edit: OnEdit,
+    /// Pause at the first thing that goes wrong while it runs; without a screen, end there
+    #[arg(long, action = ArgAction::SetTrue)]
+    pub pause_on_error: bool,
     /// How long a block may run before it is stopped, ms
     #[arg(long, value_name = "MS", default_value = "250", value_parser = clap::value_parser!(u64).range(1..=60_000))]
     pub block_limit: u64,
@@ -145,10 +148,11 @@ impl RunArgs {
         let limits =
             Limits { time: Duration::from_millis(self.block_limit), memory: (self.memory_limit << 20) as usize };
         let access = if self.allow_system { Access::System } else { Access::Sandboxed };
+        let on_error = if self.pause_on_error { OnError::Pause } else { OnError::Continue };
         let clock = if self.virtual_time { Clock::Virtual } else { Clock::Real };
         Setup {
             file: self.file.clone(),
-            options: Options { limits, access, seed: self.seed, ..Options::default() },
+            options: Options { limits, access, seed: self.seed, on_error, ..Options::default() },
             pacing: Pacing { rate: self.rate, clock, until: self.until.map(|time| Time(time.as_micros() as u64)) },
             robots: self.bridge.clone(),
         }

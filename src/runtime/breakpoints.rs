@@ -9,7 +9,7 @@ use super::engine::Engine;
 use super::met::Met;
 use super::obey::{Refused, refuse};
 use super::record::{Breakpoint, Level, Setter, What};
-use crate::model::breakpoints::{Spot, in_source, transition_name, transition_named};
+use crate::model::breakpoints::{Following, Spot, SpotNames, in_source};
 use crate::model::{Matching, Program, TransitionId};
 
 #[derive(Default)]
@@ -42,13 +42,8 @@ impl Breakpoints {
     /// All states and transitions to pause at, those of the text first.
     fn spots(&self, program: &Program) -> Vec<(Spot, Setter)> {
         let source = in_source(program).filter(|spot| !self.cleared.contains(spot));
-        let mut spots: Vec<(Spot, Setter)> = source.map(|spot| (spot, Setter::Source)).collect();
-        for &spot in &self.set {
-            if !spots.iter().any(|&(known, _)| known == spot) {
-                spots.push((spot, Setter::Command));
-            }
-        }
-        spots
+        let others = self.set.iter().copied().filter(|spot| !spot.is_in_source(program));
+        source.map(|spot| (spot, Setter::Source)).chain(others.map(|spot| (spot, Setter::Command))).collect()
     }
 }
 
@@ -96,24 +91,22 @@ impl Engine {
     }
 
     fn transition_called(&self, name: &str) -> Result<TransitionId, Refused> {
-        let program = &self.program;
-        transition_named(program, name).ok_or_else(|| {
-            let all = (0..program.transitions.len() as u32).map(TransitionId);
-            let known: Vec<Arc<str>> = all.map(|id| transition_name(program, id)).collect();
-            refuse("transition", name, known.iter().map(|name| &**name))
-        })
+        let names = SpotNames::of(&self.program);
+        let known = || names.transitions().iter().map(|name| &**name);
+        names.transition_called(name).ok_or_else(|| refuse("transition", name, known()))
     }
 
     /// Another program was taken over: what is still there keeps its breakpoints.
     pub(super) fn follow_breakpoints(&mut self, old: &Program, matching: &Matching) {
         let new = Arc::clone(&self.program);
-        let follow = |spot: &Spot| spot.followed(old, &new, matching);
-        self.breakpoints.cleared =
-            self.breakpoints.cleared.iter().filter_map(follow).filter(|spot| spot.is_in_source(&new)).collect();
+        let (following, names) = (Following::new(old, &new, matching), SpotNames::of(old));
+        let cleared = std::mem::take(&mut self.breakpoints.cleared).into_iter();
+        let still = cleared.filter_map(|spot| following.spot(spot)).filter(|spot| spot.is_in_source(&new));
+        self.breakpoints.cleared = still.collect();
         for spot in std::mem::take(&mut self.breakpoints.set) {
-            match follow(&spot) {
+            match following.spot(spot) {
                 Some(now) => self.breakpoints.set.push(now),
-                None => self.breakpoint_gone(&place(spot, old), "it is no longer there"),
+                None => self.breakpoint_gone(&place(spot, &names), "it is no longer there"),
             }
         }
         self.follow_conditions(old, matching);
@@ -138,7 +131,8 @@ impl Engine {
                 Spot::Transition(transition) => breakpoints.transitions[transition.index()] = true,
             }
         }
-        let places = spots.into_iter().map(|(spot, by)| Breakpoint { at: place(spot, &program), by });
+        let names = SpotNames::of(&program);
+        let places = spots.into_iter().map(|(spot, by)| Breakpoint { at: place(spot, &names), by });
         let conditions = breakpoints.conditions.iter();
         let conditions = conditions.map(|it| Breakpoint { at: it.place(&program), by: Setter::Command });
         let all: Vec<Breakpoint> = places.chain(conditions).collect();
@@ -157,8 +151,8 @@ pub(super) enum Done {
     WasNone,
 }
 
-fn place(spot: Spot, program: &Program) -> BreakAt {
-    let name = spot.name(program);
+fn place(spot: Spot, names: &SpotNames) -> BreakAt {
+    let name = names.name(spot);
     match spot {
         Spot::State(_) => BreakAt::State { state: name },
         Spot::Transition(_) => BreakAt::Transition { transition: name },

@@ -12,7 +12,7 @@ use crate::syntax::Code;
 pub(super) struct Fired {
     transition: TransitionId,
     target: StateId,
-    via: Option<StateId>,
+    pub(super) via: Option<StateId>,
 }
 
 /// What spawns a machine: a spawn statement at top level, or one of a state's onentry items.

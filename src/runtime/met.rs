@@ -5,7 +5,7 @@ use std::sync::Arc;
 use super::command::OnError;
 use super::engine::Engine;
 use super::record::{Fault, What};
-use crate::model::breakpoints::{Spot, transition_name};
+use crate::model::breakpoints::{Spot, SpotNames};
 use crate::model::*;
 use crate::syntax::{Code, Span};
 
@@ -74,12 +74,13 @@ impl Engine {
     /// `breakpoint: entered m/b, took m: on go a -> b; error in m/b: attempt to ..`
     fn why(&self, met: &[Met]) -> String {
         let program = &self.program;
+        let names = SpotNames::of(program);
         let (mut breakpoints, mut errors) = (Vec::new(), Vec::new());
         for met in met {
             let (list, text) = match met {
                 Met::State(state) => (&mut breakpoints, format!("entered {}", program[*state].path)),
                 Met::Transition { transition, .. } => {
-                    (&mut breakpoints, format!("took {}", transition_name(program, *transition)))
+                    (&mut breakpoints, format!("took {}", names.name(Spot::Transition(*transition))))
                 }
                 Met::Condition { code, machine: None } => (&mut breakpoints, format!("{code} became true")),
                 Met::Condition { code, machine: Some(machine) } => {

@@ -64,10 +64,7 @@ impl Engine {
             Command::JumpTo { state } => self.force(self.state_called(&state)?, Forced::Jump),
             Command::Set { var, value } => self.set(&var, &value)?,
             Command::Break { at, mode } => self.set_breakpoint(&at, mode)?,
-            Command::Step
-            | Command::Rate { .. }
-            | Command::PutAtStart { .. }
-            | Command::FileChanged { .. } => {}
+            Command::Step | Command::Rate { .. } | Command::PutAtStart { .. } | Command::FileChanged { .. } => {}
         }
         Ok(())
     }

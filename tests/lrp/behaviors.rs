@@ -57,6 +57,11 @@ fn each_function_works() {
 }
 
 #[test]
+fn breakpoints_work() {
+    check("breaks");
+}
+
+#[test]
 fn failed_expectations_tell_what_was_seen() {
     check("expectations");
 }

@@ -3,6 +3,7 @@
 mod bad_input;
 mod behaviors;
 mod binary;
+mod breaks;
 mod checks;
 mod command_line;
 mod docs;
