@@ -213,12 +213,12 @@ impl Driver {
 
     fn hand_over(&mut self, delivery: Delivery, sink: Sink) {
         let Driver { engine, robots, held, .. } = self;
-        let mut now = if engine.has_paused() { Delivery::Held } else { delivery };
+        let mut timing = if engine.has_paused() { Delivery::Held } else { delivery };
         engine.drain(|record| {
             match &record.what {
                 // What pausing itself sends, to bring a robot to rest, is not to wait.
-                What::Pause { .. } => now = delivery,
-                What::Output { bridge, name, value } => match now {
+                What::Pause { .. } => timing = delivery,
+                What::Output { bridge, name, value } => match timing {
                     Delivery::Now => send(robots, bridge, name, value),
                     Delivery::Held => held.push((bridge.clone(), name.clone(), value.clone())),
                 },

@@ -6,7 +6,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use lrp::runtime::record::{Element, Load, Op};
-use lrp::runtime::{Command, Engine, Input, Record, Time, What};
+use lrp::runtime::{BreakAt, Breaking, Command, Engine, Input, Record, Time, What};
 use lrp::session::compile::Compiler;
 use lrp::syntax::Source;
 use lrp::ui::view::View;
@@ -109,7 +109,7 @@ fn event(choices: &mut Choices, engine: &Engine) -> Event {
     let vars = &engine.program().vars;
     let state = choices.of(states).map(|state| state.path.to_string()).unwrap_or_default();
     let var = choices.of(vars).map(|var| var.path.to_string()).unwrap_or_default();
-    Event::Command(match choices.below(10) {
+    Event::Command(match choices.below(13) {
         0 => Command::Pause,
         1 | 2 => Command::Resume,
         3 => Command::TransitionTo { state },
@@ -118,6 +118,12 @@ fn event(choices: &mut Choices, engine: &Engine) -> Event {
         6 => Command::Restart,
         7 => Command::Runstop,
         8 if engine.is_paused() => Command::Step,
+        9 => Command::Break { at: BreakAt::State { state: state.into() }, mode: Breaking::Set },
+        10 => Command::Break { at: BreakAt::State { state: state.into() }, mode: Breaking::Clear },
+        11 => {
+            let at = BreakAt::Condition { condition: "now() % 300 == 0".into(), machine: "".into() };
+            Command::Break { at, mode: Breaking::Set }
+        }
         _ => {
             let value = json!({ "data": choices.below(4) });
             return Event::Input(Input { bridge: "robot".into(), name: "light".into(), value });
