@@ -56,7 +56,7 @@ impl Engine {
     pub(super) fn set_breakpoint(&mut self, at: &BreakAt, mode: Breaking) -> Result<(), Refused> {
         let done = match (at, mode) {
             (BreakAt::Condition { condition, machine }, Breaking::Set) => self.watch(condition, machine)?,
-            (BreakAt::Condition { condition, machine }, Breaking::Clear) => self.unwatch(condition, machine),
+            (BreakAt::Condition { condition, machine }, Breaking::Clear) => self.unwatch(condition, machine)?,
             (BreakAt::State { state }, _) => self.set_spot(Spot::State(self.state_called(state)?), mode),
             (BreakAt::Transition { transition }, _) => {
                 self.set_spot(Spot::Transition(self.transition_called(transition)?), mode)

@@ -43,10 +43,7 @@ impl Engine {
         if self.program.sources.is_empty() {
             return Err(Refused("there is no program yet to watch".to_string()));
         }
-        let machine = match machine {
-            "" => None,
-            path => Some(self.machine_called(path)?),
-        };
+        let machine = self.scope_called(machine)?;
         if self.watched(code, machine).is_some() {
             return Ok(Done::Done);
         }
@@ -56,21 +53,25 @@ impl Engine {
         Ok(Done::Done)
     }
 
-    pub(super) fn unwatch(&mut self, code: &str, machine: &str) -> Done {
-        let machine = self.program.machine(machine);
-        let Some(index) = self.watched(code, machine) else { return Done::WasNone };
+    pub(super) fn unwatch(&mut self, code: &str, machine: &str) -> Result<Done, Refused> {
+        let machine = self.scope_called(machine)?;
+        let Some(index) = self.watched(code, machine) else { return Ok(Done::WasNone) };
         let condition = self.breakpoints.conditions.remove(index);
         self.store.lua.free_block(condition.block);
-        Done::Done
+        Ok(Done::Done)
     }
 
     fn watched(&self, code: &str, machine: Option<MachineId>) -> Option<usize> {
         self.breakpoints.conditions.iter().position(|known| *known.code == *code && known.machine == machine)
     }
 
-    fn machine_called(&self, path: &str) -> Result<MachineId, Refused> {
+    /// A machine by its path; the empty one is the top level.
+    fn scope_called(&self, path: &str) -> Result<Option<MachineId>, Refused> {
         let known = self.program.machines.iter().map(|machine| &*machine.path);
-        self.program.machine(path).ok_or_else(|| refuse("machine", path, known))
+        match self.program.machine(path) {
+            None if !path.is_empty() => Err(refuse("machine", path, known)),
+            machine => Ok(machine),
+        }
     }
 
     fn compile_condition(&mut self, code: &str, machine: Option<MachineId>) -> Result<lua::Block, Refused> {

@@ -10,9 +10,9 @@ use crate::syntax::Code;
 /// A transition whose guard holds; `via` is the nested state an exit transition is written at.
 #[derive(Clone, Copy)]
 pub(super) struct Fired {
-    transition: TransitionId,
-    target: StateId,
-    pub(super) via: Option<StateId>,
+    pub transition: TransitionId,
+    pub target: StateId,
+    pub via: Option<StateId>,
 }
 
 /// What spawns a machine: a spawn statement at top level, or one of a state's onentry items.
