@@ -1,7 +1,7 @@
 //! What the screen does with edits, held edits and breakpoints, from stories of records.
 
 use lrp::runtime::command::{BreakAt, Breaking, Command, OnEdit, OnError, Saves};
-use lrp::runtime::record::{Breakpoint, Change, Element, Finding, Held, Op, Setter, What};
+use lrp::runtime::record::{Breakpoint, Change, Element, Fault, Finding, Held, Level, Log, Op, Setter, What};
 use lrp::ui::app::{App, Effect};
 use lrp::ui::view::{Edit, View};
 use serde_json::json;
@@ -355,4 +355,30 @@ fn an_error_that_pauses_is_looked_at() {
     assert_eq!(app.selected().map(|path| &**path), Some(at));
     press(&mut app, "Up");
     assert_ne!(press(&mut app, "o"), [Effect::OpenEditor { file: "line_follower.lrp".into(), line: 19, column: 27 }]);
+}
+
+#[test]
+fn another_file_is_named_and_opened() {
+    let mut story = Story::searching();
+    let fault = |file: &str| {
+        What::Error(Fault {
+            code: "runtime-error".into(),
+            message: "it broke".into(),
+            help: None,
+            file: file.into(),
+            line: 7,
+            column: 3,
+            state: "follower/moving".into(),
+            count: 1,
+        })
+    };
+    let log =
+        Log { level: Level::Warn, message: "slow".into(), state: "".into(), file: "lib/turn.lrp".into(), line: 5 };
+    story.tell(fault("line_follower.lrp")).tell(fault("lib/turn.lrp")).tell(What::Log(log));
+    let mut app = screen(80, 24, &story);
+    let seen = frame(&app);
+    assert!(seen.contains("✗ moving: it broke") && seen.contains("✗ turn.lrp: moving: it broke"), "{seen}");
+    assert!(seen.contains(" turn.lrp:5"), "{seen}");
+    let there = Effect::OpenEditor { file: "lib/turn.lrp".into(), line: 7, column: 3 };
+    assert_eq!(press(&mut app, "4 Down Down o"), [there]);
 }

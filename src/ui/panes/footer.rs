@@ -56,8 +56,8 @@ fn draw_typing(app: &App, typing: &Typing, message: Option<&str>, mut pen: Pen, 
     let theme = app.theme();
     let (before, sign) = match &typing.goal {
         Goal::Value(var) => (var.to_string(), " = "),
-        Goal::Condition(machine) if machine.is_empty() => ("pause when".into(), ": "),
-        Goal::Condition(machine) => (format!("pause when, in {}", name(machine)), ": "),
+        Goal::Condition(machine) if machine.is_empty() => ("pause when".into(), " "),
+        Goal::Condition(machine) => (format!("{}: pause when", name(machine)), " "),
     };
     let needed = (format::width(&before) + 3 + format::width(typing.input.value()) + 3).min(pen.room() / 2);
     match message {

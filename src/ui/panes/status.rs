@@ -9,7 +9,7 @@ use crate::runtime::record::Health;
 use crate::ui::app::App;
 use crate::ui::format;
 use crate::ui::pen::Pen;
-use crate::ui::view::{Choices, Edit, Mode, is_own_doing};
+use crate::ui::view::{Choices, Edit, Mode, is_own_doing, name};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Room {
@@ -57,7 +57,8 @@ pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) {
         && paused_for_a_reason(mode)
     {
         let style = theme.mode(mode).remove_modifier(ratatui::style::Modifier::REVERSED);
-        pen.put(reason_in(reason, pen.room()), style).put("  ", theme.normal());
+        let words = reason_in(reason, pen.room().saturating_sub(1));
+        pen.put(&words, style).put("  ", theme.normal());
     }
     draw_edit(app, &mut pen);
 }
@@ -66,9 +67,16 @@ fn paused_for_a_reason(mode: &Mode) -> bool {
     matches!(mode, Mode::Paused { reason } if !is_own_doing(reason))
 }
 
-/// That it is a breakpoint goes without saying where there is no room for it.
-fn reason_in(reason: &str, room: u16) -> &str {
-    if format::width(reason) <= room { reason } else { reason.strip_prefix("breakpoint: ").unwrap_or(reason) }
+/// With names instead of paths where there is little room, and then without saying that it is a breakpoint.
+fn reason_in(reason: &str, room: u16) -> String {
+    if format::width(reason) <= room {
+        return reason.into();
+    }
+    let words: Vec<&str> = reason.split(' ').map(name).collect();
+    let short = words.join(" ");
+    let rest = reason.strip_prefix("breakpoint: ").unwrap_or(&short);
+    let fitting = [&*short, rest].into_iter().find(|text| format::width(text) <= room);
+    fitting.unwrap_or_else(|| short.strip_prefix("breakpoint: ").unwrap_or(&short)).into()
 }
 
 /// Whether anything is to be said of how edits and errors are met.
@@ -97,8 +105,9 @@ fn draw_choices(app: &App, room: Room, pen: &mut Pen) {
         told.push((words("errors pause", "on-error", "err"), theme.bold()));
     }
     let needed = told.iter().map(|(word, _)| format::width(word) + 1).sum::<u16>().saturating_sub(1);
+    let fits = needed <= pen.room();
     for (word, style) in &told {
-        let word = if needed <= pen.room() { *word } else { &word[..1] };
+        let word = if fits { word } else { &word[..1] };
         pen.put(word, *style).put(if room > Room::Scarce { "  " } else { " " }, theme.normal());
     }
 }
@@ -205,7 +214,7 @@ fn draw_edit(app: &App, pen: &mut Pen) {
         text = format!("line {}", first.line);
     }
     if pen.room() < SENTENCE && format::width(&text) + 3 > pen.room() {
-        text.truncate(text.find(':').unwrap_or(text.len()));
+        text.truncate(text.find(':').unwrap_or(0));
     }
     pen.put_right(" ", style).put_right(&text, style).put_right("  ", Style::new());
 }

@@ -187,7 +187,10 @@ impl View {
             // The stop itself is told.
             "runstop" => (),
             _ if is_own_doing(reason) => self.journal.note(self.t, "paused"),
-            _ => self.journal.note(self.t, format!("paused: {reason}")),
+            _ => {
+                let reason = reason.strip_prefix("breakpoint: ").unwrap_or(reason);
+                self.journal.note(self.t, format!("paused: {reason}"));
+            }
         }
         if self.mode != Mode::Stopped {
             self.mode = Mode::Paused { reason: reason.into() };
