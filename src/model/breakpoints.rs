@@ -133,7 +133,7 @@ impl<'p> Following<'p> {
             (Trigger::Event(a), Trigger::Event(b)) => self.matching.event(*a) == Some(*b),
             (Trigger::AfterVar(a), Trigger::AfterVar(b)) => self.matching.var(*a) == Some(*b),
             (Trigger::Block(a), Trigger::Block(b)) | (Trigger::AfterBlock(a), Trigger::AfterBlock(b)) => {
-                same_block(self.old, *a, self.new, *b)
+                same_block(self.old, *a, self.new, *b, self.matching)
             }
             (a, b) => a == b,
         }

@@ -54,7 +54,7 @@ impl From<Program> for Edit {
 impl Comparison {
     fn between(before: &Arc<Program>, program: &Program) -> Comparison {
         let matching = Matching::of(before, program);
-        let mut changes = diff(before, program);
+        let mut changes = diff(before, program, &matching);
         changes.extend(breakpoints::changes(before, program, &matching));
         Comparison { before: Arc::clone(before), matching, changes }
     }

@@ -1,6 +1,5 @@
 //! Taking a program over while the old one runs: what the edit doesn't concern stays as it is.
 
-use std::collections::HashMap;
 use std::rc::Rc;
 use std::sync::Arc;
 
@@ -20,7 +19,7 @@ impl Engine {
         let comparison = edit.comparison(&old);
         let mut new = edit.program;
         let changes = if first { Vec::new() } else { comparison.changes.clone() };
-        let reason = self.why_restart(&new);
+        let reason = self.why_restart(&new, &comparison.matching);
         self.follow(&comparison.matching, &new);
         for uncompiled in self.store.take_over(&old, &new, &comparison.matching) {
             let span = new[uncompiled.block].span;
@@ -41,28 +40,28 @@ impl Engine {
         match reason {
             Some(reason) => self.restart(&reason),
             None if first => self.begin(),
-            None => self.apply(&old),
+            None => self.apply(&old, &comparison.matching),
         }
     }
 
     /// The one case in which a program can't go on: what is active is gone, or would have done something else.
-    fn why_restart(&self, new: &Program) -> Option<String> {
-        self.tops.iter().find_map(|&machine| self.why_restart_in(machine, new))
+    fn why_restart(&self, new: &Program, matching: &Matching) -> Option<String> {
+        self.tops.iter().find_map(|&machine| self.why_restart_in(machine, new, matching))
     }
 
-    fn why_restart_in(&self, machine: MachineId, new: &Program) -> Option<String> {
+    fn why_restart_in(&self, machine: MachineId, new: &Program, matching: &Matching) -> Option<String> {
         let running = self.running[machine.index()].as_ref()?;
-        let path = &self.program[machine].path;
-        if new.machine(path).is_none() {
+        if matching.machine(machine).is_none() {
+            let path = &self.program[machine].path;
             return Some(format!("active machine {path} removed"));
         }
         let state = &self.program[running.state];
-        match new.state(&state.path) {
+        match matching.state(running.state) {
             None => Some(format!("active state {} removed", state.path)),
-            Some(now) if !same_actions(&self.program, running.state, new, now) => {
+            Some(now) if !same_actions(&self.program, running.state, new, now, matching) => {
                 Some(format!("active state {} changed", state.path))
             }
-            Some(_) => running.nested.iter().find_map(|&nested| self.why_restart_in(nested, new)),
+            Some(_) => running.nested.iter().find_map(|&nested| self.why_restart_in(nested, new, matching)),
         }
     }
 
@@ -99,9 +98,9 @@ impl Engine {
     }
 
     /// What an edit asks for where nothing has to start again.
-    fn apply(&mut self, old: &Program) {
+    fn apply(&mut self, old: &Program, matching: &Matching) {
         let program = Arc::clone(&self.program);
-        for var in self.to_initialise(old) {
+        for var in self.to_initialise(old, matching) {
             self.initialise(var);
         }
         let plan = Rc::clone(&self.plan);
@@ -109,7 +108,7 @@ impl Engine {
         for (index, spawn) in program.spawns.iter().enumerate() {
             if let Some((machine, state)) = spawn.target
                 && !self.runs(machine)
-                && !spawned_before(old, &program[machine].path)
+                && !spawned_before(old, machine, matching)
             {
                 self.spawn(&plan, machine, state, Spawner::Top { index });
                 spawned.push(machine);
@@ -117,7 +116,7 @@ impl Engine {
         }
         self.order_tops();
         for machine in (0..program.machines.len()).map(|index| MachineId(index as u32)) {
-            spawned.extend(self.retry_spawns(old, &plan, machine));
+            spawned.extend(self.retry_spawns(old, matching, &plan, machine));
         }
         for machine in spawned {
             self.settle(&plan, machine);
@@ -125,14 +124,13 @@ impl Engine {
     }
 
     /// New variables whose scope runs, those with another initial value, and those whose initial value reads them.
-    fn to_initialise(&self, old: &Program) -> Vec<VarId> {
+    fn to_initialise(&self, old: &Program, matching: &Matching) -> Vec<VarId> {
         let program = &self.program;
         let alive: Vec<VarId> = (0..program.vars.len() as u32).map(VarId).filter(|&var| self.is_alive(var)).collect();
-        let before: HashMap<&str, BlockId> = old.vars.iter().map(|var| (&*var.path, var.init)).collect();
         let mut found: Vec<bool> = vec![false; program.vars.len()];
         for &var in &alive {
-            let was = before.get(&*program[var].path);
-            found[var.index()] = was.is_none_or(|&was| !same_block(old, was, program, program[var].init));
+            let was = matching.was(var).map(|was| old[VarId(was.index)].init);
+            found[var.index()] = was.is_none_or(|was| !same_block(old, was, program, program[var].init, matching));
         }
         let mut grown = true;
         while grown {
@@ -162,12 +160,12 @@ impl Engine {
     }
 
     /// An active state's spawns that named something unknown are tried again when it exists.
-    fn retry_spawns(&mut self, old: &Program, plan: &Plan, machine: MachineId) -> Vec<MachineId> {
+    fn retry_spawns(&mut self, old: &Program, matching: &Matching, plan: &Plan, machine: MachineId) -> Vec<MachineId> {
         let program = Arc::clone(&self.program);
         let Some(state) = self.active_state(machine) else { return Vec::new() };
-        let Some(was) = old.state(&program[state].path) else { return Vec::new() };
+        let Some(was) = matching.was(state) else { return Vec::new() };
         let mut spawned = Vec::new();
-        for (index, (before, after)) in (0..).zip(old[was].onentry.iter().zip(&program[state].onentry)) {
+        for (index, (before, after)) in (0..).zip(old[StateId(was.index)].onentry.iter().zip(&program[state].onentry)) {
             if let (
                 Entry::Spawn(Spawn { target: None, .. }),
                 Entry::Spawn(Spawn { target: Some((machine, start)), .. }),
@@ -194,8 +192,9 @@ impl Engine {
     }
 }
 
-fn spawned_before(old: &Program, machine: &str) -> bool {
-    old.spawns.iter().filter_map(|spawn| spawn.target).any(|(target, _)| &*old[target].path == machine)
+fn spawned_before(old: &Program, machine: MachineId, matching: &Matching) -> bool {
+    let machine = matching.was(machine);
+    old.spawns.iter().filter_map(|spawn| spawn.target).any(|(target, _)| Some(target.into()) == machine)
 }
 
 /// Where a fault of the old program stands in the new one, when it is a block's and the block is the same.
