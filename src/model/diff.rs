@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use super::change::{Change, Element, Op};
 use super::ids::*;
+use super::matching::Matching;
 use super::program::*;
 use crate::syntax::lua_tokens::same_code;
 
@@ -37,6 +38,18 @@ pub fn same_actions(old: &Program, a: StateId, new: &Program, b: StateId) -> boo
             (Entry::Spawn(a), Entry::Spawn(b)) => a.machine_name == b.machine_name && a.state_name == b.state_name,
             _ => false,
         })
+}
+
+/// Whether entering a state spawns the same machines in the same states, in the same order.
+pub fn same_spawns(old: &Program, a: StateId, new: &Program, b: StateId, matching: &Matching) -> bool {
+    let same = |a: &Spawn, b: &Spawn| match (a.target, b.target) {
+        (Some((machine, state)), Some((now, start))) => {
+            matching.machine(machine) == Some(now) && matching.state(state) == Some(start)
+        }
+        _ => a.machine_name == b.machine_name && a.state_name == b.state_name,
+    };
+    let (a, b): (Vec<_>, Vec<_>) = (old[a].spawns().collect(), new[b].spawns().collect());
+    a.len() == b.len() && a.iter().zip(&b).all(|((_, a), (_, b))| same(a, b))
 }
 
 fn same_blocks(old: &Program, a: &[BlockId], new: &Program, b: &[BlockId]) -> bool {

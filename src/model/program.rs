@@ -238,6 +238,16 @@ impl Program {
     }
 }
 
+impl State {
+    /// What its onentry spawns, each with its place among the onentry items.
+    pub fn spawns(&self) -> impl Iterator<Item = (u32, &Spawn)> {
+        (0..).zip(&self.onentry).filter_map(|(index, item)| match item {
+            Entry::Spawn(spawn) => Some((index, spawn)),
+            Entry::Action(_) => None,
+        })
+    }
+}
+
 impl Transition {
     pub fn leaves(&self, state: StateId) -> bool {
         match &self.sources {
