@@ -264,7 +264,7 @@ impl<'n, N: Fn(News)> Loop<'n, N> {
 
     fn command(&mut self, command: Command) {
         let real = self.started.elapsed();
-        let loads = matches!(command, Command::Load(_));
+        let loads = matches!(command, Command::Load(_) | Command::ApplyHeld);
         match &command {
             Command::Rate { hz } => match Rate::new(*hz) {
                 Some(rate) => self.pace.set_rate(rate, real),

@@ -117,8 +117,7 @@ impl Engine {
     fn order_nested(&mut self, machine: MachineId, state: StateId) {
         let spawned: Vec<Option<MachineId>> =
             self.program[state].spawns().map(|(_, spawn)| spawn.target.map(|(machine, _)| machine)).collect();
-        let place =
-            |machine: &MachineId| spawned.iter().position(|&it| it == Some(*machine)).unwrap_or(usize::MAX);
+        let place = |machine: &MachineId| spawned.iter().position(|&it| it == Some(*machine)).unwrap_or(usize::MAX);
         if let Some(running) = &mut self.running[machine.index()] {
             running.nested.sort_by_key(place);
         }

@@ -1,7 +1,7 @@
 //! Faults across an edit: those stand whose block or spawn is still there unchanged; what the checks found, and what an
 //! edit itself breaks, is told anew.
 
-use std::collections::{HashMap, VecDeque};
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use super::{Passage, Verdict};
@@ -48,20 +48,7 @@ struct Places<'p> {
     passage: &'p Passage<'p>,
     /// Old blocks in the order of their places.
     blocks: Vec<BlockId>,
-    /// By old block.
-    now: Vec<Option<BlockId>>,
     spawns: HashMap<Span, (Option<StateId>, &'p Spawn)>,
-}
-
-/// Whose a block is, by the new program: of equal ones in one home, the first stays the first.
-#[derive(PartialEq, Eq, Hash)]
-enum Home {
-    Program,
-    Var(VarId),
-    Event(EventId),
-    State(StateId),
-    /// The transitions of a machine.
-    Machine(MachineId),
 }
 
 impl<'p> Places<'p> {
@@ -71,9 +58,8 @@ impl<'p> Places<'p> {
         blocks.sort_by_key(|&block| old[block].span);
         let tops = old.spawns.iter().map(|spawn| (spawn.span, (None, spawn)));
         let states = (0..old.states.len() as u32).map(StateId);
-        let nested =
-            states.flat_map(|id| old[id].spawns().map(move |(_, spawn)| (spawn.span, (Some(id), spawn))));
-        Places { passage, blocks, now: blocks_now(passage), spawns: tops.chain(nested).collect() }
+        let nested = states.flat_map(|id| old[id].spawns().map(move |(_, spawn)| (spawn.span, (Some(id), spawn))));
+        Places { passage, blocks, spawns: tops.chain(nested).collect() }
     }
 
     /// A fault that happened while running, where what it happened in is the same.
@@ -95,7 +81,8 @@ impl<'p> Places<'p> {
         });
         let was = self.blocks[..after].last().copied()?;
         let around = old[was].span;
-        let now = self.now[was.index()].filter(|_| around.file == span.file && span.end <= around.end)?;
+        let inside = around.file == span.file && span.end <= around.end;
+        let now = if inside { self.passage.block(was)? } else { return None };
         let start = (new[now].span.start + (span.start - around.start)) as usize;
         let span = Span::new(new[now].span.file, start, start + (span.end - span.start) as usize);
         Some(Moved { span, source: new.source(span).clone(), state: new.owner_path(now) })
@@ -116,42 +103,28 @@ impl<'p> Places<'p> {
     }
 }
 
-/// By old block: the new one that reads the same in the same home.
-fn blocks_now(passage: &Passage) -> Vec<Option<BlockId>> {
-    let Passage { old, new, .. } = passage;
-    let mut there: HashMap<(Home, &str), VecDeque<BlockId>> = HashMap::new();
-    for (index, block) in new.blocks.iter().enumerate() {
-        let home = home(new, block.owner);
-        there.entry((home, &block.code)).or_default().push_back(BlockId(index as u32));
-    }
-    let mut now = Vec::with_capacity(old.blocks.len());
-    for block in &old.blocks {
-        let twins = passage.home(block.owner).and_then(|home| there.get_mut(&(home, &*block.code)));
-        now.push(twins.and_then(VecDeque::pop_front));
-    }
-    now
-}
-
-fn home(program: &Program, owner: Owner) -> Home {
-    match owner {
-        Owner::Program => Home::Program,
-        Owner::Var(var) => Home::Var(var),
-        Owner::Event(event) => Home::Event(event),
-        Owner::State(state) => Home::State(state),
-        Owner::Transition(transition) => Home::Machine(program[transition].machine),
-    }
-}
-
 impl Passage<'_> {
-    /// Of an old block; none where the owner is gone.
-    fn home(&self, owner: Owner) -> Option<Home> {
-        match home(self.old, owner) {
-            Home::Program => Some(Home::Program),
-            Home::Var(var) => self.matching.var(var).map(Home::Var),
-            Home::Event(event) => self.matching.event(event).map(Home::Event),
-            Home::State(state) => self.matching.state(state).map(Home::State),
-            Home::Machine(machine) => self.matching.machine(machine).map(Home::Machine),
-        }
+    /// The new block that reads the same in the same element: of equal ones there, the first stays the first.
+    fn block(&self, was: BlockId) -> Option<BlockId> {
+        let (before, after) = self.homes(self.old[was].owner)?;
+        let same = |program: &Program, block: &BlockId| program[*block].code == self.old[was].code;
+        let nth = before.into_iter().filter(|block| same(self.old, block)).position(|block| block == was)?;
+        after.into_iter().filter(|block| same(self.new, block)).nth(nth)
+    }
+
+    /// All blocks of an element, old and new; for a transition, of all those of its machine.
+    fn homes(&self, owner: Owner) -> Option<(Vec<BlockId>, Vec<BlockId>)> {
+        let Passage { old, new, matching } = self;
+        Some(match owner {
+            Owner::Program => (old.hooks(), new.hooks()),
+            Owner::Var(var) => (vec![old[var].init], vec![new[matching.var(var)?].init]),
+            Owner::Event(event) => (vec![old[event].block], vec![new[matching.event(event)?].block]),
+            Owner::State(state) => (old[state].blocks(), new[matching.state(state)?].blocks()),
+            Owner::Transition(transition) => {
+                let machine = old[transition].machine;
+                (old.guards(machine), new.guards(matching.machine(machine)?))
+            }
+        })
     }
 }
 

@@ -6,11 +6,11 @@ use std::sync::Arc;
 use super::{Passage, Verdict};
 use crate::model::edit::Comparison;
 use crate::model::*;
+use crate::runtime::Saves;
 use crate::runtime::engine::Engine;
 use crate::runtime::findings::findings;
 use crate::runtime::note::Note;
 use crate::runtime::obey::Refused;
-use crate::runtime::Saves;
 use crate::runtime::record::{Change, Finding, Held, What};
 
 pub(in crate::runtime) struct Pending {
