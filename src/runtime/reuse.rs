@@ -49,7 +49,7 @@ fn in_order(old: &[Key], blocks: &[Block], cells: &[Cell]) -> Vec<Option<usize>>
         next = found + 1;
         Some(found)
     };
-    blocks.iter().map(|block| find(block)).collect()
+    blocks.iter().map(find).collect()
 }
 
 fn left_over<'k>(old: &'k [Key], pairs: &[Option<usize>]) -> HashMap<&'k Key, VecDeque<usize>> {
