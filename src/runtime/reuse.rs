@@ -44,7 +44,7 @@ pub fn pairs(old: &[Key], blocks: &[Block], cells: &[Cell]) -> Vec<Option<usize>
 
 fn in_order(old: &[Key], blocks: &[Block], cells: &[Cell]) -> Vec<Option<usize>> {
     let mut next = 0;
-    let mut find = |block| {
+    let find = |block: &Block| {
         let found = (next..old.len().min(next + NEAR)).find(|&index| old[index].is_of(block, cells))?;
         next = found + 1;
         Some(found)
