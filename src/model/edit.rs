@@ -53,7 +53,7 @@ impl From<Program> for Edit {
 impl Comparison {
     fn between(before: &Arc<Program>, program: &Program) -> Comparison {
         let matching = Matching::of(before, program);
-        let changes = diff(before, program);
+        let changes = diff(before, program, &matching);
         Comparison { before: Arc::clone(before), matching, changes }
     }
 }

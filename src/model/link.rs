@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::element::Kind;
 use super::ids::*;
 use super::names::Names;
 use super::program::*;
@@ -58,19 +59,14 @@ impl Resolver<'_> {
 
     fn link_spawn(&mut self, spawn: &ast::Spawn, by: Option<StateId>) -> Spawn {
         let machine = Names::of(&self.program).machine(by, &spawn.machine.text);
-        let target = machine.and_then(|machine| {
-            let state = self.program.state_named(machine, &spawn.state.text);
-            if state.is_none() {
-                self.unknown_state(machine, &spawn.state);
-            }
-            state.map(|state| (machine, state))
-        });
-        if machine.is_none() {
+        let target = machine.and_then(|machine| self.find_state(machine, &spawn.state).map(|state| (machine, state)));
+        if !self.program.is_called(machine, &spawn.machine.text) {
             self.unknown_machine(spawn, by);
         }
         Spawn {
             machine_name: spawn.machine.text.clone(),
             state_name: spawn.state.text.clone(),
+            machine,
             target,
             span: spawn.span,
         }
@@ -116,16 +112,16 @@ impl Resolver<'_> {
             },
             _ => machine,
         };
-        let target = self.program.state_named(owner, &tree.target.text);
-        if target.is_none() {
-            self.unknown_state(owner, &tree.target);
-            if kind == TransitionKind::Exit && self.program.state_named(machine, &tree.target.text).is_some() {
-                self.help_last(format!(
-                    "an exit goes to a state of `{}`; `on` goes to one of `{}`",
-                    self.name(owner),
-                    self.name(machine)
-                ));
-            }
+        let target = self.find_state(owner, &tree.target);
+        if target.is_none()
+            && kind == TransitionKind::Exit
+            && self.program.state_named(machine, &tree.target.text).is_some()
+        {
+            self.help_last(format!(
+                "an exit goes to a state of `{}`; `on` goes to one of `{}`",
+                self.name(owner),
+                self.name(machine)
+            ));
         }
         target
     }
@@ -178,27 +174,21 @@ impl Resolver<'_> {
             ast::Sources::One(name) => std::slice::from_ref(name),
             ast::Sources::Some(names) => names,
         };
-        let mut states = Vec::new();
-        for name in names {
-            match self.program.state_named(machine, &name.text) {
-                Some(state) => states.push(state),
-                None => self.unknown_state(machine, name),
-            }
-        }
+        let states = names.iter().filter_map(|name| self.find_state(machine, name)).collect();
         Sources::These { names: names.iter().map(|name| name.text.clone()).collect(), states }
     }
 
     fn link_trigger(&mut self, trigger: &ast::Trigger, machine: MachineId) -> Trigger {
         match trigger {
             ast::Trigger::Block(block) => Trigger::Block(self.transition_block(block, machine)),
-            ast::Trigger::Event(name) => match Names::of(&self.program).event(machine, &name.text) {
-                Some(event) => Trigger::Event(event),
-                None => {
+            ast::Trigger::Event(name) => {
+                let event = Names::of(&self.program).event(machine, &name.text);
+                if !self.program.is_called(event, &name.text) {
                     let known = Names::of(&self.program).events(machine);
                     self.unknown(Code::UnknownEvent, "event", name, known.iter().map(|name| &**name));
-                    Trigger::UnknownEvent(name.text.clone())
                 }
-            },
+                event.map_or_else(|| Trigger::UnknownEvent(name.text.clone()), Trigger::Event)
+            }
         }
     }
 
@@ -206,15 +196,24 @@ impl Resolver<'_> {
         match timeout {
             ast::Timeout::Number { ms, .. } => Trigger::After(*ms),
             ast::Timeout::Block(block) => Trigger::AfterBlock(self.transition_block(block, machine)),
-            ast::Timeout::Variable(name) => match Names::of(&self.program).var(Some(machine), &name.text) {
-                Some(var) => Trigger::AfterVar(var),
-                None => {
+            ast::Timeout::Variable(name) => {
+                let var = Names::of(&self.program).var(Some(machine), &name.text);
+                if !self.program.is_called(var, &name.text) {
                     let known = Names::of(&self.program).vars(Some(machine));
                     self.unknown(Code::UnknownVariable, "variable", name, known.iter().map(|name| &**name));
-                    Trigger::AfterUnknown(name.text.clone())
                 }
-            },
+                var.map_or_else(|| Trigger::AfterUnknown(name.text.clone()), Trigger::AfterVar)
+            }
         }
+    }
+
+    /// A state of a machine; where none is called so, that is said.
+    fn find_state(&mut self, machine: MachineId, name: &ast::Name) -> Option<StateId> {
+        let state = Names::of(&self.program).state(machine, &name.text);
+        if !self.program.is_called(state, &name.text) {
+            self.unknown_state(machine, name);
+        }
+        state
     }
 
     fn unknown_state(&mut self, machine: MachineId, name: &ast::Name) {
@@ -232,7 +231,9 @@ impl Resolver<'_> {
         known: impl IntoIterator<Item = &'a str>,
     ) {
         let known: Vec<&str> = known.into_iter().collect();
+        let alias = Kind::missing(code).and_then(|kind| self.program.alias(kind, &name.text));
         let help = match nearest(&name.text, known.iter().copied()) {
+            _ if let Some(renamed) = alias => renamed_help(&name.text, self.program.name(renamed)),
             Some(near) => format!("did you mean `{near}`?"),
             None if known.is_empty() => "there is none here yet".to_string(),
             None if known.len() <= LISTED => format!("there is: {}", known.join(", ")),
@@ -242,4 +243,9 @@ impl Resolver<'_> {
         let message = format!("`{}` is not {article} {what}", name.text);
         self.diagnostics.push(Diagnostic::error(code, name.span, message).help(help));
     }
+}
+
+/// What to do about a name whose element has another one now.
+pub(super) fn renamed_help(old: &str, new: &str) -> String {
+    format!("`{old}` seems to have been renamed to `{new}`: rename it here too")
 }

@@ -1,21 +1,25 @@
 //! What a program means: its machines, states and transitions with every name resolved, and how two programs differ.
 //! Knows nothing of running one.
 
+pub mod alias;
 pub mod blocks;
 pub mod change;
 pub mod description;
 pub mod diff;
 pub mod edit;
+pub mod element;
 pub mod ids;
 mod link;
 pub mod matching;
 pub mod names;
 pub mod program;
 pub mod resolve;
+mod words;
 
 pub use description::Description;
 pub use edit::Edit;
+pub use element::{Alias, ElementId, Kind};
 pub use ids::*;
 pub use matching::Matching;
 pub use program::*;
-pub use resolve::{Robot, resolve};
+pub use resolve::{Robot, resolve, resolve_renamed};

@@ -3,6 +3,7 @@
 use std::ops::Index;
 use std::sync::Arc;
 
+use super::element::Alias;
 use super::ids::*;
 use crate::syntax::{Diagnostic, Source, Span};
 
@@ -24,6 +25,8 @@ pub struct Program {
     pub bridges: Vec<Bridge>,
     pub on_pause: Option<BlockId>,
     pub on_resume: Option<BlockId>,
+    /// An element that was renamed, while its uses still go by the old name.
+    pub alias: Option<Alias>,
     /// What the checks found; none of it keeps the program from running.
     pub findings: Vec<Diagnostic>,
 }
@@ -73,6 +76,8 @@ pub enum Entry {
 pub struct Spawn {
     pub machine_name: Arc<str>,
     pub state_name: Arc<str>,
+    /// Where it exists, whether or not the state does.
+    pub machine: Option<MachineId>,
     /// The machine and the state, where both exist.
     pub target: Option<(MachineId, StateId)>,
     pub span: Span,
@@ -152,6 +157,8 @@ pub struct Block {
     pub owner: Owner,
     /// The variables it reads or writes, found through its scopes.
     pub uses: Vec<VarId>,
+    /// Names in it that nothing is known by.
+    pub missing: Vec<Arc<str>>,
 }
 
 /// The element a block is written in.

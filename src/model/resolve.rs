@@ -4,6 +4,7 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
+use super::element::Alias;
 use super::ids::*;
 use super::names::Names;
 use super::program::*;
@@ -19,10 +20,22 @@ pub struct Robot {
 }
 
 pub fn resolve(tree: &Tree, source: Source, robots: &[Robot], checker: &mut Checker) -> Program {
+    resolve_renamed(tree, source, robots, checker, None)
+}
+
+/// With `alias`, one element of the program that comes of it can be found by another name as well.
+pub fn resolve_renamed(
+    tree: &Tree,
+    source: Source,
+    robots: &[Robot],
+    checker: &mut Checker,
+    alias: Option<Alias>,
+) -> Program {
     let mut resolver =
         Resolver { program: Program { sources: vec![source], ..Program::default() }, ..Resolver::default() };
     resolver.declare(tree);
     resolver.bridges(tree, robots, checker);
+    resolver.program.alias = alias;
     resolver.link();
     let mut program = resolver.program;
     program.findings = resolver.diagnostics;
@@ -117,7 +130,14 @@ impl<'t> Resolver<'t> {
     pub(super) fn block(&mut self, block: &ast::Block, machine: Option<MachineId>, owner: Owner) -> BlockId {
         let id = BlockId(self.program.blocks.len() as u32);
         let code = block.text.clone();
-        self.program.blocks.push(Block { code, span: block.span, machine, owner, uses: Vec::new() });
+        self.program.blocks.push(Block {
+            code,
+            span: block.span,
+            machine,
+            owner,
+            uses: Vec::new(),
+            missing: Vec::new(),
+        });
         id
     }
 

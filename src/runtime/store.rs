@@ -132,7 +132,13 @@ impl Store {
     }
 
     fn compile(&mut self, program: &Program, block: &Block) -> Result<Compiled, SyntaxError> {
-        let bound: Vec<(&str, Cell)> = block.uses.iter().map(|&var| (&*program[var].name, self.cell(var))).collect();
+        let renamed = program.alias.iter().filter_map(|alias| {
+            let var = block.uses.iter().find(|&&var| alias.means == var.into())?;
+            Some((&*alias.name, self.cell(*var)))
+        });
+        let own = block.uses.iter().map(|&var| (&*program[var].name, self.cell(var)));
+        // What is really called so counts before what was.
+        let bound: Vec<(&str, Cell)> = renamed.chain(own).collect();
         let function = self.lua.compile(&block.code, &bound)?;
         Ok(Compiled { lua: Some(function), ..Compiled::default() })
     }

@@ -1,7 +1,8 @@
 //! From a program's text to a program that can be run, or to what keeps it from being one.
 
 use crate::lua::{Access, Checker};
-use crate::model::{Program, Robot, resolve};
+use crate::model::{Program, Robot, alias, resolve, resolve_renamed};
+use crate::syntax::ast::Tree;
 use crate::syntax::parser::parse;
 use crate::syntax::{Code, Diagnostic, FileId, Source, Span};
 
@@ -35,12 +36,17 @@ impl Compiler {
     }
 
     pub fn compile(&mut self, source: Source) -> Result<Program, Rejected> {
+        self.compile_after(source, &Program::default())
+    }
+
+    /// A text that is to follow on a program that runs: names may still mean what they did there.
+    pub fn compile_after(&mut self, source: Source, running: &Program) -> Result<Program, Rejected> {
         let parsed = parse(&source, FileId(0));
         let broken = parsed.diagnostics.iter().any(Diagnostic::is_error);
         if parsed.tree.forms.is_empty() && !broken {
             return Err(Rejected { diagnostics: vec![empty(&source)], sources: vec![source] });
         }
-        let mut program = resolve(&parsed.tree, source, &self.robots, &mut self.checker);
+        let mut program = self.resolve(&parsed.tree, source, running);
         let is_lua = |finding: &Diagnostic| matches!(finding.code, Code::LuaSyntax | Code::Smalltalk);
         if broken {
             // Forms that can't be read are missing from the tree: what refers to them is not to blame.
@@ -52,6 +58,13 @@ impl Compiler {
             true => Err(Rejected { sources: program.sources, diagnostics: program.findings }),
             false => Ok(program),
         }
+    }
+
+    fn resolve(&mut self, tree: &Tree, source: Source, running: &Program) -> Program {
+        let program = resolve(tree, source.clone(), &self.robots, &mut self.checker);
+        let Some(alias) = alias::propose(running, &program) else { return program };
+        let renamed = resolve_renamed(tree, source, &self.robots, &mut self.checker, Some(alias));
+        if alias::holds(running, &renamed) { renamed } else { program }
     }
 }
 

@@ -13,7 +13,7 @@ use super::engine_thread::{Commands, Library};
 use super::loader::Unreadable;
 use super::watch::{Saved, Watch, Watched};
 use super::{findings, loader, modules, robots};
-use crate::model::Program;
+use crate::model::{Edit, Program};
 use crate::runtime::Command;
 use crate::runtime::record::Finding;
 use crate::syntax::Source;
@@ -111,11 +111,12 @@ impl Desk {
     }
 
     fn load(&mut self, compiler: &mut Compiler, source: Source) {
-        let command = match compiler.compile(source) {
+        let running = self.commands.running();
+        let command = match compiler.compile_after(source, &running) {
             Ok(program) => {
                 self.beside = self.files_of_robots(&program);
                 self.watch_all();
-                Command::Load(program.into())
+                Command::Load(Edit::of(&running, program))
             }
             Err(Rejected { sources, diagnostics }) => {
                 Command::Reject { findings: findings::errors_first(&diagnostics, &sources) }

@@ -8,6 +8,7 @@ mod command_line;
 mod docs;
 mod editor;
 mod edits;
+mod edits_on_screen;
 mod frames;
 mod graph;
 mod isolation;

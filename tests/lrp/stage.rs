@@ -5,6 +5,7 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use lrp::lua::Limits;
+use lrp::model::Edit;
 use lrp::runtime::{Command, Engine, Input, OnEdit, Options, Record, Saves, Time};
 use lrp::session::compile::{Compiler, Rejected};
 use lrp::session::driver::Driver;
@@ -70,8 +71,9 @@ impl Stage {
     }
 
     fn save(&mut self, text: String) {
-        let command = match self.compiler.compile(Source::new("case.lrp", text)) {
-            Ok(program) => Command::Load(program.into()),
+        let running = self.driver.engine().program();
+        let command = match self.compiler.compile_after(Source::new("case.lrp", text), running) {
+            Ok(program) => Command::Load(Edit::of(running, program)),
             Err(Rejected { sources, diagnostics }) => {
                 Command::Reject { findings: findings::errors_first(&diagnostics, &sources) }
             }

@@ -11,7 +11,7 @@ use super::failure::{Complaint, Situation};
 use super::message::{self, Direction, hint};
 use super::options::Options;
 use super::readable;
-use crate::model::{Description, Program, Robot};
+use crate::model::{Description, Edit, Program, Robot};
 use crate::runtime::record::{Fault, Finding, Held};
 use crate::runtime::{self, Command, Input, Record, Time, What};
 use crate::session::compile::{Compiler, Rejected};
@@ -96,7 +96,8 @@ impl Bench {
                 config.insert("world".to_string(), world.display().to_string().into());
             }
         }
-        self.command(Command::Load(program.into()))
+        let edit = Edit::of(self.driver.engine().program(), program);
+        self.command(Command::Load(edit))
     }
 
     /// A test that asks for a robot can't do without it.
@@ -120,7 +121,7 @@ impl Bench {
 
     pub fn edit(&mut self, text: String) -> Result<(), Complaint> {
         self.file = Source::new(self.file.name.clone(), text);
-        match self.compiler.compile(self.file.clone()) {
+        match self.compiler.compile_after(self.file.clone(), self.driver.engine().program()) {
             Ok(program) => self.load(program),
             Err(Rejected { sources, diagnostics }) => {
                 self.command(Command::Reject { findings: findings::errors_first(&diagnostics, &sources) })
