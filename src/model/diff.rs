@@ -47,7 +47,7 @@ pub fn same_actions(old: &Program, a: StateId, new: &Program, b: StateId, matchi
 /// Whether entering a state spawns the same machines in the same order in both programs.
 pub fn same_spawns(old: &Program, a: StateId, new: &Program, b: StateId, matching: &Matching) -> bool {
     let (was, now): (Vec<_>, Vec<_>) = (old[a].spawns().collect(), new[b].spawns().collect());
-    was.len() == now.len() && was.iter().zip(&now).all(|(was, now)| same_spawn(old, was, new, now, matching))
+    was.len() == now.len() && was.iter().zip(&now).all(|((_, was), (_, now))| same_spawn(old, was, new, now, matching))
 }
 
 /// Whether a block does the same in both programs.
@@ -56,6 +56,9 @@ pub fn same_block(old: &Program, a: BlockId, new: &Program, b: BlockId, matching
 }
 
 fn same_spawn(old: &Program, was: &Spawn, new: &Program, now: &Spawn, matching: &Matching) -> bool {
+    if let (Some((machine, state)), Some(target)) = (was.target, now.target) {
+        return (matching.machine(machine), matching.state(state)) == (Some(target.0), Some(target.1));
+    }
     let same_text = was.machine_name == now.machine_name && was.state_name == now.state_name;
     same_text || spawn_keys(Side::Old(old, new), matching, was) == spawn_keys(Side::New(new), matching, now)
 }
@@ -174,7 +177,7 @@ struct Listed<'p, K, T> {
 
 fn bridges(program: &Program) -> Vec<Listed<'_, &str, (&str, &serde_json::Value)>> {
     let bridges = program.bridges.iter();
-    bridges.map(|it| Listed { path: &*it.name, key: &*it.name, text: (&*it.kind, &it.config) }).collect()
+    bridges.map(|it| Listed { path: &it.name, key: &*it.name, text: (&*it.kind, &it.config) }).collect()
 }
 
 /// Removed ones in the old order, then added and changed ones in the new order.
