@@ -1,5 +1,7 @@
 //! Blocks: compiled, placed, freed. Knows nothing of calling them.
 
+use std::sync::Arc;
+
 use super::bytecode::{self, Kind};
 use super::desk::Chunk;
 use super::{Block, Cell, Lua, Slot, SyntaxError, source};
@@ -89,11 +91,11 @@ impl Lua {
     }
 
     /// Where a block is: its first line is line `first_line` (from 1) of `file`. To be called again when an edit moved it.
-    pub fn set_place(&mut self, block: Block, file: &str, first_line: u32) {
+    pub fn set_place(&mut self, block: Block, file: &Arc<str>, first_line: u32) {
         if let Some(chunk) = self.chunk(block)
             && let Some(chunk) = self.desk.chunks.borrow_mut().get_mut(&chunk)
         {
-            chunk.place = Some((file.into(), first_line));
+            chunk.place = Some((Arc::clone(file), first_line));
         }
     }
 

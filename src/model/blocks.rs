@@ -1,5 +1,6 @@
 //! What the Lua in a program's blocks refers to: variables, bridges, or nothing known.
 
+use super::link::renamed_help;
 use super::names::Names;
 use super::program::{Block, Program};
 use crate::lua::{self, Checker, NameUse};
@@ -23,6 +24,7 @@ pub fn resolve_blocks(program: &mut Program, checker: &mut Checker) {
         };
         let names = Names::of(program);
         let (mut reads, mut writes) = (Vec::new(), Vec::new());
+        let mut missing = Vec::new();
         let mut unknown: Vec<&str> = Vec::new();
         let read = facts.reads.iter().map(|name| (name, Access::Read));
         for (name, access) in read.chain(facts.writes.iter().map(|name| (name, Access::Write))) {
@@ -30,19 +32,18 @@ pub fn resolve_blocks(program: &mut Program, checker: &mut Checker) {
                 Access::Read => &mut reads,
                 Access::Write => &mut writes,
             };
-            match names.var(block.machine, &name.name) {
-                Some(var) if !known.contains(&var) => known.push(var),
-                Some(_) => {}
-                None if unknown.contains(&&*name.name) => {}
-                None => {
-                    unknown.push(&name.name);
-                    found.extend(unknown_name(program, index, name, access, &at_hand));
-                }
+            let var = names.var(block.machine, &name.name);
+            known.extend(var.filter(|var| !known.contains(var)));
+            if !program.is_called(var, &name.name) && !unknown.contains(&&*name.name) {
+                unknown.push(&name.name);
+                let finding = unknown_name(program, index, name, access, &at_hand);
+                missing.extend(finding.as_ref().filter(|_| var.is_none()).map(|_| name.name.as_str().into()));
+                found.extend(finding);
             }
         }
         let block = &mut program.blocks[index];
         block.uses = reads.iter().copied().chain(writes.iter().copied().filter(|var| !reads.contains(var))).collect();
-        (block.reads, block.writes, block.facts) = (reads, writes, facts);
+        (block.reads, block.writes, block.missing, block.facts) = (reads, writes, missing, facts);
     }
     program.findings.extend(found);
 }
@@ -80,7 +81,9 @@ fn unknown_name(
             let message = format!("`{}` is not a variable in scope here", name.name);
             let inside = program.vars.iter().find(|var| *var.name == *name.name);
             let system = lua::SYSTEM.contains(&&*name.name);
+            let renamed = Names::of(program).var(block.machine, &name.name);
             let help = match (inside, nearest(&name.name, known.iter().map(String::as_str))) {
+                _ if let Some(var) = renamed => renamed_help(&name.name, program.name(var)),
                 (Some(var), _) => {
                     format!("`{}` is seen only in its machine: declare it further out to share it", var.path)
                 }

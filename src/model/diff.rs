@@ -1,50 +1,61 @@
-//! How two programs differ, as changes to elements named by their paths. Layout and comments are no difference.
+//! How two programs differ, as changes to elements named by their paths. Layout and comments are no difference, and what
+//! was renamed is no difference to what names it.
 
 use std::collections::{BTreeMap, HashMap, HashSet};
+use std::hash::Hash;
 use std::sync::Arc;
 
 use super::change::{Change, Element, Op};
+use super::element::{ElementId, Kind};
 use super::ids::*;
+use super::matching::{Key, Matching, Reading, Side};
 use super::program::*;
 use crate::syntax::lua_tokens::same_code;
 
-pub fn diff(old: &Program, new: &Program) -> Vec<Change> {
-    let mut changes = Vec::new();
-    changes.extend(compare(Element::Bridge, bridges(old), bridges(new), |a, b| a == b));
-    changes.extend(compare(Element::Variable, vars(old), vars(new), |&a, &b| {
-        same_block(old, old[a].init, new, new[b].init)
-    }));
-    changes.extend(compare(Element::Machine, machines(old), machines(new), |_, _| true));
-    changes.extend(compare(Element::State, states(old), states(new), |&a, &b| same_actions(old, a, new, b)));
-    changes.extend(compare(Element::Event, events(old), events(new), |&a, &b| {
-        same_block(old, old[a].block, new, new[b].block)
-    }));
-    changes.extend(compare(Element::Transition, transitions(old), transitions(new), |_, _| true));
-    changes.extend(reordered(old, new));
-    changes.extend(compare(Element::Spawn, spawns(old), spawns(new), |a, b| a == b));
-    changes.extend(compare(Element::Action, hooks(old), hooks(new), |&a, &b| same_block(old, a, new, b)));
+pub fn diff(old: &Program, new: &Program, matching: &Matching) -> Vec<Change> {
+    let both = Both { old, new, matching };
+    let mut changes = compare(Element::Bridge, bridges(old), bridges(new));
+    changes.extend(both.elements(Element::Variable, |index| VarId(index).into(), old.vars.len(), new.vars.len()));
+    let machines =
+        both.elements(Element::Machine, |index| MachineId(index).into(), old.machines.len(), new.machines.len());
+    changes.extend(machines);
+    changes.extend(both.elements(Element::State, |index| StateId(index).into(), old.states.len(), new.states.len()));
+    changes.extend(both.elements(Element::Event, |index| EventId(index).into(), old.events.len(), new.events.len()));
+    changes.extend(both.transitions());
+    changes.extend(both.reordered());
+    changes.extend(compare(Element::Spawn, both.spawns(Side::Old(old, new)), both.spawns(Side::New(new))));
+    changes.extend(compare(Element::Action, both.hooks(Side::Old(old, new)), both.hooks(Side::New(new))));
     changes
 }
 
 /// Whether entering, being in and leaving a state does the same in both programs.
-pub fn same_actions(old: &Program, a: StateId, new: &Program, b: StateId) -> bool {
-    let (a, b) = (&old[a], &new[b]);
-    same_blocks(old, &a.running, new, &b.running)
-        && same_blocks(old, &a.onexit, new, &b.onexit)
-        && a.onentry.len() == b.onentry.len()
-        && a.onentry.iter().zip(&b.onentry).all(|pair| match pair {
-            (Entry::Action(a), Entry::Action(b)) => same_block(old, *a, new, *b),
-            (Entry::Spawn(a), Entry::Spawn(b)) => a.machine_name == b.machine_name && a.state_name == b.state_name,
-            _ => false,
-        })
+pub fn same_actions(old: &Program, a: StateId, new: &Program, b: StateId, matching: &Matching) -> bool {
+    let (was, now) = (&old[a], &new[b]);
+    let same_blocks = |was: &[BlockId], now: &[BlockId]| {
+        was.len() == now.len() && was.iter().zip(now).all(|(&was, &now)| same_block(old, was, new, now, matching))
+    };
+    let same_entry = |pair: (&Entry, &Entry)| match pair {
+        (Entry::Action(was), Entry::Action(now)) => same_block(old, *was, new, *now, matching),
+        (Entry::Spawn(was), Entry::Spawn(now)) => same_spawn(old, was, new, now, matching),
+        _ => false,
+    };
+    same_blocks(&was.running, &now.running)
+        && same_blocks(&was.onexit, &now.onexit)
+        && was.onentry.len() == now.onentry.len()
+        && was.onentry.iter().zip(&now.onentry).all(same_entry)
 }
 
-fn same_blocks(old: &Program, a: &[BlockId], new: &Program, b: &[BlockId]) -> bool {
-    a.len() == b.len() && a.iter().zip(b).all(|(&a, &b)| same_block(old, a, new, b))
+/// Whether entering a state spawns the same machines in the same order in both programs.
+pub fn same_spawns(old: &Program, a: StateId, new: &Program, b: StateId, matching: &Matching) -> bool {
+    let (was, now): (Vec<_>, Vec<_>) = (old[a].spawns().collect(), new[b].spawns().collect());
+    was.len() == now.len() && was.iter().zip(&now).all(|((_, was), (_, now))| same_spawn(old, was, new, now, matching))
 }
 
-pub fn same_block(old: &Program, a: BlockId, new: &Program, b: BlockId) -> bool {
-    same_text(&old[a].code, &new[b].code) && same_modules(old, &old[a].requires, new, &new[b].requires)
+/// Whether a block does the same in both programs.
+pub fn same_block(old: &Program, a: BlockId, new: &Program, b: BlockId, matching: &Matching) -> bool {
+    let same_text =
+        || old[a].code == new[b].code || keys(Side::Old(old, new), matching, a) == keys(Side::New(new), matching, b);
+    same_modules(old, &old[a].requires, new, &new[b].requires) && same_text()
 }
 
 /// The text of required Lua files counts as part of a block.
@@ -56,97 +67,157 @@ pub fn same_modules(old: &Program, a: &[ModuleId], new: &Program, b: &[ModuleId]
         modules.iter().map(|&it| (program[it].name.clone(), program.module_text(it).clone())).collect()
     };
     let (a, b) = (named(old, a), named(new, b));
-    a.len() == b.len() && a.iter().zip(&b).all(|(a, b)| a.0 == b.0 && same_text(a.1, b.1))
+    a.len() == b.len() && a.iter().zip(&b).all(|(a, b)| a.0 == b.0 && (a.1 == b.1 || same_code(a.1, b.1)))
 }
 
-fn same_text(a: &str, b: &str) -> bool {
-    a == b || same_code(a, b)
+fn same_spawn(old: &Program, was: &Spawn, new: &Program, now: &Spawn, matching: &Matching) -> bool {
+    if let (Some((machine, state)), Some(target)) = (was.target, now.target) {
+        return (matching.machine(machine), matching.state(state)) == (Some(target.0), Some(target.1));
+    }
+    let same_text = was.machine_name == now.machine_name && was.state_name == now.state_name;
+    same_text || spawn_keys(Side::Old(old, new), matching, was) == spawn_keys(Side::New(new), matching, now)
 }
 
-type Named<T> = Vec<(Arc<str>, T)>;
+fn spawn_keys<'p>(side: Side<'p>, matching: &Matching, spawn: &'p Spawn) -> Vec<Key<'p>> {
+    side.keys(matching, Reading::Current, |words| words.spawn(spawn))
+}
+
+fn keys<'p>(side: Side<'p>, matching: &Matching, block: BlockId) -> Vec<Key<'p>> {
+    side.keys(matching, Reading::Current, |words| words.block(block))
+}
+
+struct Both<'p> {
+    old: &'p Program,
+    new: &'p Program,
+    matching: &'p Matching,
+}
+
+impl<'p> Both<'p> {
+    /// Removed ones in the old order, then added, renamed and changed ones in the new order.
+    fn elements(&self, kind: Element, id: fn(u32) -> ElementId, before: usize, after: usize) -> Vec<Change> {
+        let Both { old, new, matching } = *self;
+        let change = |op, path: &Arc<str>| Change { op, kind, path: path.clone(), to: None };
+        let gone = (0..before as u32).map(id).filter(|&was| matching.now(was).is_none());
+        let mut changes: Vec<Change> = gone.map(|was| change(Op::Removed, old.path(was))).collect();
+        for now in (0..after as u32).map(id) {
+            let Some(was) = matching.was(now) else {
+                changes.push(change(Op::Added, new.path(now)));
+                continue;
+            };
+            if old.name(was) != new.name(now) {
+                changes.push(Change { to: Some(new.path(now).clone()), ..change(Op::Renamed, old.path(was)) });
+            }
+            if !self.does_the_same(was, now) {
+                changes.push(change(Op::Changed, new.path(now)));
+            }
+        }
+        changes
+    }
+
+    /// Apart from what is written inside, which is listed for itself.
+    fn does_the_same(&self, was: ElementId, now: ElementId) -> bool {
+        let Both { old, new, matching } = *self;
+        let blocks = match was.kind {
+            Kind::Machine => return true,
+            Kind::State => {
+                return same_actions(old, StateId(was.index), new, StateId(now.index), matching);
+            }
+            Kind::Event => (old[EventId(was.index)].block, new[EventId(now.index)].block),
+            Kind::Var => (old[VarId(was.index)].init, new[VarId(now.index)].init),
+        };
+        same_block(old, blocks.0, new, blocks.1, matching)
+    }
+
+    fn transitions(&self) -> Vec<Change> {
+        let Both { old, new, matching } = *self;
+        let ids = |program: &Program| (0..program.transitions.len() as u32).map(TransitionId);
+        let removed = ids(old).filter(|&was| matching.transition(was).is_none());
+        let added = ids(new).filter(|&now| matching.transition_was(now).is_none());
+        let change = |op| move |path| Change { op, kind: Element::Transition, path, to: None };
+        let mut changes: Vec<Change> = removed.map(|was| numbered_key(old, was)).map(change(Op::Removed)).collect();
+        changes.extend(added.map(|now| numbered_key(new, now)).map(change(Op::Added)));
+        changes
+    }
+
+    /// States out of which the same transitions are tried in another order.
+    fn reordered(&self) -> Vec<Change> {
+        let Both { old, new, matching } = *self;
+        let mut changes = Vec::new();
+        for (index, state) in new.states.iter().enumerate() {
+            let Some(was) = matching.was(StateId(index as u32)) else { continue };
+            let before = old[StateId(was.index)].outgoing.iter().filter_map(|&was| matching.transition(was));
+            if before.clone().eq(state.outgoing.iter().copied()) {
+                continue;
+            }
+            let common: HashSet<TransitionId> = before.clone().collect();
+            let common: HashSet<TransitionId> =
+                state.outgoing.iter().copied().filter(|now| common.contains(now)).collect();
+            let before = before.filter(|now| common.contains(now));
+            if !before.eq(state.outgoing.iter().copied().filter(|now| common.contains(now))) {
+                let path = format!("{}: order out of {}", new[state.machine].path, state.name).into();
+                changes.push(Change { op: Op::Changed, kind: Element::Transition, path, to: None });
+            }
+        }
+        changes
+    }
+
+    /// Only the state differs when a spawn is said to have changed.
+    fn spawns(&self, side: Side<'p>) -> Vec<Listed<'p, Key<'p>, Key<'p>>> {
+        let spawns = side.program().spawns.iter();
+        let listed = spawns.filter_map(|spawn| {
+            let [machine, state] = <[Key; 2]>::try_from(spawn_keys(side, self.matching, spawn)).ok()?;
+            Some(Listed { path: &spawn.machine_name, key: machine, text: state })
+        });
+        listed.collect()
+    }
+
+    fn hooks(&self, side: Side<'p>) -> Vec<Listed<'p, &'static str, Vec<Key<'p>>>> {
+        let program = side.program();
+        let hooks = [("onpause", program.on_pause), ("onresume", program.on_resume)];
+        let listed = hooks.into_iter().filter_map(|(form, block)| {
+            Some(Listed { path: form, key: form, text: keys(side, self.matching, block?) })
+        });
+        listed.collect()
+    }
+}
+
+/// Something without an id.
+struct Listed<'p, K, T> {
+    path: &'p str,
+    /// What tells it from others.
+    key: K,
+    /// What may change in it.
+    text: T,
+}
+
+fn bridges(program: &Program) -> Vec<Listed<'_, &str, (&str, &serde_json::Value)>> {
+    let bridges = program.bridges.iter();
+    bridges.map(|it| Listed { path: &it.name, key: &*it.name, text: (&*it.kind, &it.config) }).collect()
+}
 
 /// Removed ones in the old order, then added and changed ones in the new order.
-fn compare<T, U>(kind: Element, old: Named<T>, new: Named<U>, same: impl Fn(&T, &U) -> bool) -> Vec<Change> {
-    let before: HashMap<&str, &T> = old.iter().map(|(path, item)| (&**path, item)).collect();
-    let after: HashSet<&str> = new.iter().map(|(path, _)| &**path).collect();
-    let change = |op, path: &Arc<str>| Change { op, kind, path: path.clone(), to: None };
-    let removed = old.iter().filter(|(path, _)| !after.contains(&**path)).map(|(path, _)| change(Op::Removed, path));
-    let rest = new.iter().filter_map(|(path, item)| match before.get(&**path) {
-        None => Some(change(Op::Added, path)),
-        Some(was) if !same(was, item) => Some(change(Op::Changed, path)),
+fn compare<K: Hash + Eq, T: PartialEq>(kind: Element, old: Vec<Listed<K, T>>, new: Vec<Listed<K, T>>) -> Vec<Change> {
+    let before: HashMap<&K, &T> = old.iter().map(|it| (&it.key, &it.text)).collect();
+    let after: HashSet<&K> = new.iter().map(|it| &it.key).collect();
+    let change = |op, path: &str| Change { op, kind, path: path.into(), to: None };
+    let removed = old.iter().filter(|it| !after.contains(&it.key)).map(|it| change(Op::Removed, it.path));
+    let rest = new.iter().filter_map(|it| match before.get(&it.key) {
+        None => Some(change(Op::Added, it.path)),
+        Some(&was) if *was != it.text => Some(change(Op::Changed, it.path)),
         Some(_) => None,
     });
     removed.chain(rest).collect()
 }
 
-fn bridges(program: &Program) -> Named<(Arc<str>, serde_json::Value)> {
-    let one = |bridge: &Bridge| (bridge.name.clone(), (bridge.kind.clone(), bridge.config.clone()));
-    program.bridges.iter().map(one).collect()
-}
-
-fn vars(program: &Program) -> Named<VarId> {
-    program.vars.iter().enumerate().map(|(i, var)| (var.path.clone(), VarId(i as u32))).collect()
-}
-
-fn machines(program: &Program) -> Named<()> {
-    program.machines.iter().map(|machine| (machine.path.clone(), ())).collect()
-}
-
-fn states(program: &Program) -> Named<StateId> {
-    program.states.iter().enumerate().map(|(i, state)| (state.path.clone(), StateId(i as u32))).collect()
-}
-
-fn events(program: &Program) -> Named<EventId> {
-    program.events.iter().enumerate().map(|(i, event)| (event.path.clone(), EventId(i as u32))).collect()
-}
-
-/// Only the state differs when a spawn is said to have changed.
-fn spawns(program: &Program) -> Named<Arc<str>> {
-    program.spawns.iter().map(|spawn| (spawn.machine_name.clone(), spawn.state_name.clone())).collect()
-}
-
-fn hooks(program: &Program) -> Named<BlockId> {
-    let pause = program.on_pause.map(|block| ("onpause".into(), block));
-    let resume = program.on_resume.map(|block| ("onresume".into(), block));
-    pause.into_iter().chain(resume).collect()
-}
-
-/// A transition is what its machine, kind, sources, target, name and trigger are; equal ones are told apart by order.
-fn transitions(program: &Program) -> Named<()> {
-    let mut seen: HashMap<String, usize> = HashMap::new();
-    let mut named = Vec::with_capacity(program.transitions.len());
-    for transition in &program.transitions {
-        let key = transition_key(program, transition);
-        let order = seen.entry(key.clone()).or_insert(0);
-        *order += 1;
-        let key = if *order == 1 { key } else { format!("{key} #{order}") };
-        named.push((key.into(), ()));
+/// Of equal transitions, the second and later ones have a number.
+fn numbered_key(program: &Program, id: TransitionId) -> Arc<str> {
+    let transition = &program[id];
+    let key = transition_key(program, transition);
+    let before = program[transition.machine].transitions.iter().take_while(|&&other| other != id);
+    match before.filter(|&&other| transition_key(program, &program[other]) == key).count() {
+        0 => key.into(),
+        twins => format!("{key} #{}", twins + 1).into(),
     }
-    named
-}
-
-/// States out of which the same transitions are tried in another order.
-fn reordered(old: &Program, new: &Program) -> Vec<Change> {
-    let order = |program: &Program, state: StateId| -> Vec<String> {
-        program[state].outgoing.iter().map(|&id| transition_key(program, &program[id])).collect()
-    };
-    let before: HashMap<&str, StateId> =
-        old.states.iter().enumerate().map(|(i, state)| (&*state.path, StateId(i as u32))).collect();
-    let mut changes = Vec::new();
-    for (index, state) in new.states.iter().enumerate() {
-        let Some(&was) = before.get(&*state.path) else { continue };
-        let (mut was, mut now) = (order(old, was), order(new, StateId(index as u32)));
-        was.retain(|key| now.contains(key));
-        now.retain(|key| was.contains(key));
-        // Equal ones have no order among themselves.
-        was.dedup();
-        now.dedup();
-        if was != now {
-            let path = format!("{}: order out of {}", new[state.machine].path, state.name).into();
-            changes.push(Change { op: Op::Changed, kind: Element::Transition, path, to: None });
-        }
-    }
-    changes
 }
 
 /// `follower: on bumping * -> bumpback`
@@ -156,17 +227,12 @@ pub fn transition_key(program: &Program, transition: &Transition) -> String {
         Sources::These { names, .. } if names.len() == 1 => names[0].to_string(),
         Sources::These { names, .. } => format!("({})", names.join(" ")),
     };
-    let kind = match transition.kind {
-        TransitionKind::On => "on ",
-        TransitionKind::Eps => "eps ",
-        TransitionKind::Ontime => "ontime ",
-        TransitionKind::Exit => "exit ",
-    };
+    let kind = transition.kind.form();
     let trigger = trigger_text(program, &transition.trigger);
     let space = if trigger.is_empty() { "" } else { " " };
     let name = transition.name.as_ref().map(|name| format!(" {name}")).unwrap_or_default();
     let machine = &program[transition.machine].path;
-    format!("{machine}: {kind}{trigger}{space}{sources} -> {}{name}", transition.target_name)
+    format!("{machine}: {kind} {trigger}{space}{sources} -> {}{name}", transition.target_name)
 }
 
 /// As written: an event's name, a number or variable of milliseconds, a block in its brackets; nothing for eps.

@@ -2,13 +2,14 @@
 
 use std::sync::Arc;
 
+use super::element::Kind;
 use super::ids::*;
 use super::names::Names;
 use super::program::*;
 use super::resolve::Resolver;
 use super::suggestion::suggestion;
 use crate::syntax::ast::{self, MachineItem, StateItem};
-use crate::syntax::{Code, Diagnostic};
+use crate::syntax::{Code, Diagnostic, Span};
 
 impl Resolver<'_> {
     pub(super) fn link(&mut self) {
@@ -30,6 +31,11 @@ impl Resolver<'_> {
 
     fn link_state(&mut self, id: StateId, tree: &ast::State) {
         let machine = Some(self.program[id].machine);
+        let breaks = tree.items.iter().filter_map(|item| match item {
+            StateItem::Break(span) => Some(*span),
+            _ => None,
+        });
+        self.program.states[id.index()].breakpoint = self.first_break(breaks);
         for item in &tree.items {
             match item {
                 StateItem::OnEntry(ast::Entry::Action(block)) => {
@@ -48,26 +54,34 @@ impl Resolver<'_> {
                     let block = self.block(block, machine, Owner::State(id));
                     self.program.states[id.index()].onexit.push(block);
                 }
-                StateItem::Machine(_) => {}
+                StateItem::Break(_) | StateItem::Machine(_) => {}
             }
         }
     }
 
+    /// One `(break)` in a place is enough.
+    fn first_break(&mut self, mut breaks: impl Iterator<Item = Span>) -> Option<Span> {
+        let first = breaks.next()?;
+        for span in breaks {
+            self.diagnostics.push(
+                Diagnostic::error(Code::Duplicate, span, "a second `break` here; one is enough")
+                    .also(first, "the first one")
+                    .help("remove one of them"),
+            );
+        }
+        Some(first)
+    }
+
     fn link_spawn(&mut self, spawn: &ast::Spawn, by: Option<StateId>) -> Spawn {
         let machine = Names::of(&self.program).machine(by, &spawn.machine.text);
-        let target = machine.and_then(|machine| {
-            let state = self.state_named(machine, &spawn.state.text);
-            if state.is_none() {
-                self.unknown_state(machine, &spawn.state);
-            }
-            state.map(|state| (machine, state))
-        });
-        if machine.is_none() {
+        let target = machine.and_then(|machine| self.find_state(machine, &spawn.state).map(|state| (machine, state)));
+        if !self.program.is_called(machine, &spawn.machine.text) {
             self.unknown_machine(spawn, by);
         }
         Spawn {
             machine_name: spawn.machine.text.clone(),
             state_name: spawn.state.text.clone(),
+            machine,
             target,
             span: spawn.span,
         }
@@ -91,6 +105,7 @@ impl Resolver<'_> {
             target,
             name: tree.name.as_ref().map(|name| name.text.clone()),
             trigger,
+            breakpoint: self.first_break(tree.breaks.iter().copied()),
             span: tree.span,
         };
         self.attach(id, &transition);
@@ -113,16 +128,13 @@ impl Resolver<'_> {
             },
             _ => machine,
         };
-        let target = self.state_named(owner, &tree.target.text);
-        if target.is_none() {
-            self.unknown_state(owner, &tree.target);
-            if kind == TransitionKind::Exit && self.state_named(machine, &tree.target.text).is_some() {
-                self.help_last(format!(
-                    "an exit goes to a state of `{}`; `on` goes to one of `{}`",
-                    self.name(owner),
-                    self.name(machine)
-                ));
-            }
+        let target = self.find_state(owner, &tree.target);
+        if target.is_none() && kind == TransitionKind::Exit && self.state_named(machine, &tree.target.text).is_some() {
+            self.help_last(format!(
+                "an exit goes to a state of `{}`; `on` goes to one of `{}`",
+                self.name(owner),
+                self.name(machine)
+            ));
         }
         target
     }
@@ -198,27 +210,21 @@ impl Resolver<'_> {
             ast::Sources::One(name) => std::slice::from_ref(name),
             ast::Sources::Some(names) => names,
         };
-        let mut states = Vec::new();
-        for name in names {
-            match self.state_named(machine, &name.text) {
-                Some(state) => states.push(state),
-                None => self.unknown_state(machine, name),
-            }
-        }
+        let states = names.iter().filter_map(|name| self.find_state(machine, name)).collect();
         Sources::These { names: names.iter().map(|name| name.text.clone()).collect(), states }
     }
 
     fn link_trigger(&mut self, trigger: &ast::Trigger, machine: MachineId) -> Trigger {
         match trigger {
             ast::Trigger::Block(block) => Trigger::Block(self.transition_block(block, machine)),
-            ast::Trigger::Event(name) => match Names::of(&self.program).event(machine, &name.text) {
-                Some(event) => Trigger::Event(event),
-                None => {
+            ast::Trigger::Event(name) => {
+                let event = Names::of(&self.program).event(machine, &name.text);
+                if !self.program.is_called(event, &name.text) {
                     let known = Names::of(&self.program).events(machine);
                     self.unknown(Code::UnknownEvent, "event", name, known.iter().map(|name| &**name));
-                    Trigger::UnknownEvent(name.text.clone())
                 }
-            },
+                event.map_or_else(|| Trigger::UnknownEvent(name.text.clone()), Trigger::Event)
+            }
         }
     }
 
@@ -226,15 +232,27 @@ impl Resolver<'_> {
         match timeout {
             ast::Timeout::Number { ms, .. } => Trigger::After(*ms),
             ast::Timeout::Block(block) => Trigger::AfterBlock(self.transition_block(block, machine)),
-            ast::Timeout::Variable(name) => match Names::of(&self.program).var(Some(machine), &name.text) {
-                Some(var) => Trigger::AfterVar(var),
-                None => {
+            ast::Timeout::Variable(name) => {
+                let var = Names::of(&self.program).var(Some(machine), &name.text);
+                if !self.program.is_called(var, &name.text) {
                     let known = Names::of(&self.program).vars(Some(machine));
                     self.unknown(Code::UnknownVariable, "variable", name, known.iter().map(|name| &**name));
-                    Trigger::AfterUnknown(name.text.clone())
                 }
-            },
+                var.map_or_else(|| Trigger::AfterUnknown(name.text.clone()), Trigger::AfterVar)
+            }
         }
+    }
+
+    /// A state of a machine; where none is called so, that is said.
+    fn find_state(&mut self, machine: MachineId, name: &ast::Name) -> Option<StateId> {
+        let renamed = || self.program.alias(Kind::State, &name.text).map(|alias| StateId(alias.index));
+        let state = self
+            .state_named(machine, &name.text)
+            .or_else(|| renamed().filter(|&state| self.program[state].machine == machine));
+        if !self.program.is_called(state, &name.text) {
+            self.unknown_state(machine, name);
+        }
+        state
     }
 
     fn unknown_state(&mut self, machine: MachineId, name: &ast::Name) {
@@ -252,9 +270,18 @@ impl Resolver<'_> {
         known: impl IntoIterator<Item = &'a str>,
     ) {
         let known: Vec<&str> = known.into_iter().collect();
-        let help = suggestion(&name.text, &known);
+        let alias = Kind::missing(code).and_then(|kind| self.program.alias(kind, &name.text));
+        let help = match alias {
+            Some(renamed) => renamed_help(&name.text, self.program.name(renamed)),
+            None => suggestion(&name.text, &known),
+        };
         let article = if what.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
         let message = format!("`{}` is not {article} {what}", name.text);
         self.diagnostics.push(Diagnostic::error(code, name.span, message).help(help));
     }
+}
+
+/// What to do about a name whose element has another one now.
+pub(super) fn renamed_help(old: &str, new: &str) -> String {
+    format!("`{old}` seems to have been renamed to `{new}`: rename it here too")
 }

@@ -1,13 +1,16 @@
 //! What a program means: its machines, states and transitions with every name resolved, and how two programs differ.
 //! Knows nothing of running one.
 
+pub mod alias;
 pub mod blocks;
+pub mod breakpoints;
 mod bridges;
 pub mod change;
 pub mod checks;
 pub mod description;
 pub mod diff;
 pub mod edit;
+pub mod element;
 pub mod files;
 mod globals;
 pub mod ids;
@@ -18,9 +21,11 @@ pub mod names;
 pub mod program;
 pub mod resolve;
 mod suggestion;
+mod words;
 
 pub use description::Description;
 pub use edit::Edit;
+pub use element::{Alias, ElementId, Kind};
 pub use files::File;
 pub use ids::*;
 pub use matching::Matching;

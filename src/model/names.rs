@@ -1,7 +1,8 @@
-//! Looking names up from the innermost scope outwards.
+//! Looking names up from the innermost scope outwards; where nothing is called so, what was renamed is.
 
 use std::sync::Arc;
 
+use super::element::Kind;
 use super::ids::*;
 use super::program::Program;
 use crate::syntax::FileId;
@@ -26,6 +27,13 @@ impl<'p> Names<'p> {
         self.outwards(machine)
             .find_map(|machine| self.program[machine].vars.iter().copied().find(named))
             .or_else(|| self.program.globals.iter().copied().find(named))
+            .or_else(|| self.renamed_var(machine, name))
+    }
+
+    fn renamed_var(&self, machine: Option<MachineId>, name: &str) -> Option<VarId> {
+        let var = VarId(self.program.alias(Kind::Var, name)?.index);
+        let scope = self.program[var].machine;
+        (scope.is_none() || self.outwards(machine).any(|around| Some(around) == scope)).then_some(var)
     }
 
     /// Every variable in scope, inner ones first.
@@ -41,9 +49,15 @@ impl<'p> Names<'p> {
     }
 
     pub fn event(&self, machine: MachineId, name: &str) -> Option<EventId> {
-        self.outwards(Some(machine)).find_map(|machine| {
-            self.program[machine].events.iter().copied().find(|&event| &*self.program[event].name == name)
-        })
+        let named = |&event: &EventId| &*self.program[event].name == name;
+        self.outwards(Some(machine))
+            .find_map(|machine| self.program[machine].events.iter().copied().find(named))
+            .or_else(|| self.renamed_event(machine, name))
+    }
+
+    fn renamed_event(&self, machine: MachineId, name: &str) -> Option<EventId> {
+        let event = EventId(self.program.alias(Kind::Event, name)?.index);
+        self.outwards(Some(machine)).any(|around| around == self.program[event].machine).then_some(event)
     }
 
     pub fn events(&self, machine: MachineId) -> Vec<Arc<str>> {
@@ -62,7 +76,10 @@ impl<'p> Names<'p> {
     }
 
     pub fn machine(&self, state: Option<StateId>, name: &str) -> Option<MachineId> {
-        self.machines_in_scope(state).find(|&machine| &*self.program[machine].name == name)
+        let renamed = || self.program.alias(Kind::Machine, name).map(|alias| MachineId(alias.index));
+        self.machines_in_scope(state)
+            .find(|&machine| &*self.program[machine].name == name)
+            .or_else(|| renamed().filter(|renamed| self.machines_in_scope(state).any(|machine| machine == *renamed)))
     }
 
     pub fn machines(&self, state: Option<StateId>) -> Vec<Arc<str>> {

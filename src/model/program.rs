@@ -3,6 +3,7 @@
 use std::ops::Index;
 use std::sync::Arc;
 
+use super::element::Alias;
 use super::ids::*;
 use crate::lua::Facts;
 use crate::syntax::{Diagnostic, FileId, Source, Span};
@@ -31,6 +32,8 @@ pub struct Program {
     pub bridges: Vec<Bridge>,
     pub on_pause: Option<BlockId>,
     pub on_resume: Option<BlockId>,
+    /// An element that was renamed, while its uses still go by the old name.
+    pub alias: Option<Alias>,
     /// What the checks found; none of it keeps the program from running.
     pub findings: Vec<Diagnostic>,
 }
@@ -66,6 +69,8 @@ pub struct State {
     pub outgoing: Vec<TransitionId>,
     /// Exit transitions of the machines written in it, which leave this state.
     pub exits: Vec<TransitionId>,
+    /// Its `(break)`.
+    pub breakpoint: Option<Span>,
     pub span: Span,
     pub name_span: Span,
 }
@@ -80,6 +85,8 @@ pub enum Entry {
 pub struct Spawn {
     pub machine_name: Arc<str>,
     pub state_name: Arc<str>,
+    /// Where it exists, whether or not the state does.
+    pub machine: Option<MachineId>,
     /// The machine and the state, where both exist.
     pub target: Option<(MachineId, StateId)>,
     pub span: Span,
@@ -96,6 +103,8 @@ pub struct Transition {
     pub target: Option<StateId>,
     pub name: Option<Arc<str>>,
     pub trigger: Trigger,
+    /// Its `(break)`.
+    pub breakpoint: Option<Span>,
     pub span: Span,
 }
 
@@ -162,6 +171,8 @@ pub struct Block {
     pub uses: Vec<VarId>,
     pub reads: Vec<VarId>,
     pub writes: Vec<VarId>,
+    /// Names in it that nothing is known by.
+    pub missing: Vec<Arc<str>>,
     /// What can be said of its text alone; nothing where that isn't Lua.
     pub facts: Arc<Facts>,
     /// The Lua files it requires by a literal name, also through other ones; sorted.
@@ -260,6 +271,43 @@ impl Program {
             Owner::State(state) => self[state].path.clone(),
             Owner::Transition(transition) => self[self[transition].machine].path.clone(),
         }
+    }
+
+    /// The actions on pause and resume.
+    pub fn hooks(&self) -> Vec<BlockId> {
+        self.on_pause.into_iter().chain(self.on_resume).collect()
+    }
+
+    /// The blocks written in the transitions of a machine.
+    pub fn guards(&self, machine: MachineId) -> Vec<BlockId> {
+        let block = |&id: &TransitionId| match self[id].trigger {
+            Trigger::Block(block) | Trigger::AfterBlock(block) => Some(block),
+            _ => None,
+        };
+        self[machine].transitions.iter().filter_map(block).collect()
+    }
+
+    pub fn state_named(&self, machine: MachineId, name: &str) -> Option<StateId> {
+        self[machine].states.iter().copied().find(|&state| &*self[state].name == name)
+    }
+}
+
+impl State {
+    /// All its actions.
+    pub fn blocks(&self) -> Vec<BlockId> {
+        let onentry = self.onentry.iter().filter_map(|item| match item {
+            Entry::Action(block) => Some(*block),
+            Entry::Spawn(_) => None,
+        });
+        onentry.chain(self.running.iter().copied()).chain(self.onexit.iter().copied()).collect()
+    }
+
+    /// What its onentry spawns, each with its place among the onentry items.
+    pub fn spawns(&self) -> impl Iterator<Item = (u32, &Spawn)> {
+        (0..).zip(&self.onentry).filter_map(|(index, item)| match item {
+            Entry::Spawn(spawn) => Some((index, spawn)),
+            Entry::Action(_) => None,
+        })
     }
 }
 

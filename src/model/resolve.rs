@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use super::blocks::syntax_diagnostic;
+use super::element::Alias;
 use super::files::{File, precedence};
 use super::ids::*;
 use super::names::Names;
@@ -23,11 +24,12 @@ pub struct Robot {
 /// A program of one file.
 pub fn resolve(tree: &Tree, source: Source, robots: &[Robot], checker: &mut Checker) -> Program {
     let file = File { source, tree, imports: Vec::new(), qualifier: String::new() };
-    resolve_files(&[file], robots, checker)
+    resolve_files(&[file], robots, checker, None)
 }
 
-/// `files` by `FileId`: the program itself is the first.
-pub fn resolve_files(files: &[File], robots: &[Robot], checker: &mut Checker) -> Program {
+/// `files` by `FileId`: the program itself is the first. With `alias`, one element of the program that comes of it can be
+/// found by another name as well.
+pub fn resolve_files(files: &[File], robots: &[Robot], checker: &mut Checker, alias: Option<Alias>) -> Program {
     let order = precedence(files);
     let mut resolver = Resolver { files, ..Resolver::default() };
     resolver.program.sources = files.iter().map(|file| file.source.clone()).collect();
@@ -35,6 +37,7 @@ pub fn resolve_files(files: &[File], robots: &[Robot], checker: &mut Checker) ->
     resolver.declare(&order);
     resolver.share_machines();
     resolver.bridges(&order, robots, checker);
+    resolver.program.alias = alias;
     resolver.link();
     let mut program = resolver.program;
     program.findings = resolver.diagnostics;
@@ -136,10 +139,11 @@ impl<'t> Resolver<'t> {
             machine,
             owner,
             uses: Vec::new(),
-            requires: Vec::new(),
             reads: Vec::new(),
             writes: Vec::new(),
+            missing: Vec::new(),
             facts: Arc::default(),
+            requires: Vec::new(),
         });
         id
     }
@@ -272,6 +276,7 @@ impl<'t> Resolver<'t> {
             machines: Vec::new(),
             outgoing: Vec::new(),
             exits: Vec::new(),
+            breakpoint: None,
             span: state.span,
             name_span: state.name.span,
         });

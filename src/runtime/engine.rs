@@ -5,11 +5,13 @@ use std::sync::Arc;
 
 use serde_json::Value;
 
+use super::breakpoints::Breakpoints;
 use super::command::{OnEdit, OnError, Saves};
 use super::faults::Faults;
 use super::note::Note;
+use super::patch::Pending;
 use super::plan::Plan;
-use super::record::{Change, Load, Record, What};
+use super::record::{Record, What};
 use super::robot::Robots;
 use super::store::Store;
 use super::time::Time;
@@ -66,20 +68,29 @@ pub struct Engine {
     pub(super) on_edit: OnEdit,
     pub(super) saves: Saves,
     pub(super) on_error: OnError,
-    /// Not taken over yet.
-    pub(super) held: Option<Edit>,
+    /// An edit that is not taken over yet.
+    pub(super) held: Option<Pending>,
     pub(super) notes: Vec<Note>,
     pub(super) faults: Faults,
     pub(super) changes: super::changes::Changes,
+    pub(super) breakpoints: Breakpoints,
 }
 
 /// A machine that runs: where it is and what it has spawned there.
 pub(super) struct Running {
     pub state: StateId,
     pub entered: Time,
+    /// The name of the state that it was started in.
+    pub start: Arc<str>,
     pub nested: Vec<MachineId>,
     /// Found to hold right after entry: taken in the next step, unless an edit comes between.
     pub decided: Option<super::machine::Fired>,
+}
+
+impl Running {
+    pub fn new(state: StateId, entered: Time, start: Arc<str>) -> Running {
+        Running { state, entered, start, nested: Vec::new(), decided: None }
+    }
 }
 
 impl Engine {
@@ -103,6 +114,7 @@ impl Engine {
             notes: Vec::new(),
             faults: Faults::default(),
             changes: super::changes::Changes::default(),
+            breakpoints: Breakpoints::default(),
         };
         engine.library(|name| Err(format!("module '{name}' is not found")));
         engine
@@ -128,7 +140,9 @@ impl Engine {
         for index in 0..self.tops.len() {
             self.step_machine(&plan, self.tops[index]);
         }
+        self.test_conditions();
         self.finish();
+        self.pause_if_met();
     }
 
     /// What robots said; blocks see it from now on.
@@ -148,6 +162,9 @@ impl Engine {
         }
         if self.faults.any_unreported() {
             self.report_faults();
+        }
+        if self.held.is_some() {
+            self.tell_held_again();
         }
     }
 
@@ -180,6 +197,7 @@ impl Engine {
     /// Hands over what happened since the last call, in order.
     pub fn drain(&mut self, mut sink: impl FnMut(Record)) {
         let (step, t) = (self.step, self.now);
+        self.breakpoints.paused = false;
         for note in self.notes.drain(..) {
             sink(Record { step, t, what: note.spell_out(&self.program) });
         }
@@ -187,20 +205,7 @@ impl Engine {
 
     /// Forgets what happened since the last `drain`: for those who only want the machines to run.
     pub fn discard_records(&mut self) {
+        self.breakpoints.paused = false;
         self.notes.clear();
-    }
-
-    pub(super) fn load_record(&self, changes: Vec<Change>, reason: Option<String>) -> Load {
-        let program = &self.program;
-        Load {
-            changes,
-            restarted: reason.is_some(),
-            reason,
-            again: Vec::new(),
-            discarded: Vec::new(),
-            findings: super::findings::findings(program, |finding| !finding.is_error()),
-            files: super::findings::files(program),
-            program: Some(Arc::clone(program)),
-        }
     }
 }

@@ -2,13 +2,16 @@
 //! Never looks at the clock, the disk, the terminal or a socket.
 
 mod blocks;
+mod breakpoints;
 mod changes;
 pub mod command;
+mod conditions;
 pub mod engine;
 mod faults;
 pub mod findings;
 mod force;
 mod machine;
+mod met;
 mod modules;
 mod note;
 mod obey;
@@ -17,6 +20,7 @@ mod picture;
 mod plan;
 mod reach;
 pub mod record;
+mod reuse;
 mod robot;
 mod store;
 pub mod time;

@@ -3,13 +3,13 @@
 use std::rc::Rc;
 use std::sync::Arc;
 
-use super::command::{Command, Saves};
+use super::command::Command;
 use super::engine::Engine;
 use super::machine::Spawner;
-use super::record::{Forced, Held, Level, Log, What};
+use super::record::{Forced, Level, Log, What};
 use crate::lua::{Cell, Ran};
 use crate::model::names::Names;
-use crate::model::{Edit, StateId, VarId};
+use crate::model::{StateId, VarId};
 use crate::syntax::nearest::nearest;
 
 /// Why a command had no effect, as a sentence.
@@ -29,63 +29,48 @@ impl Engine {
         }
         let result = self.obey(command);
         if let Err(Refused(message)) = &result {
-            let log = Log {
-                level: Level::Error,
-                message: message.clone(),
-                state: Arc::default(),
-                file: Arc::default(),
-                line: 0,
-            };
-            self.rare(What::Log(log));
+            self.remark(Level::Error, message.clone());
         }
         self.finish();
+        self.pause_if_met();
         result
+    }
+
+    /// Something to be told that no block wrote.
+    pub(super) fn remark(&mut self, level: Level, message: String) {
+        let log = Log { level, message, state: Arc::default(), file: Arc::default(), line: 0 };
+        self.rare(What::Log(log));
     }
 
     fn obey(&mut self, command: Command) -> Result<(), Refused> {
         match command {
-            Command::Load(edit) if self.saves == Saves::Hold && !self.program.sources.is_empty() => self.hold(edit),
+            Command::Load(edit) if self.holds_saves() => self.hold(edit),
             Command::Load(edit) => self.load(edit),
-            Command::ApplyHeld => {
-                if let Some(edit) = self.held.take() {
-                    self.load(edit);
-                }
-            }
-            Command::DropHeld => self.held = None,
+            Command::ApplyHeld => self.apply_held()?,
+            Command::DropHeld => self.drop_held()?,
             Command::OnEdit { mode } => self.on_edit = mode,
             Command::Saves { mode } => self.saves = mode,
             Command::OnError { mode } => self.on_error = mode,
             Command::Reject { findings } => self.rare(What::Reject { findings }),
-            Command::Pause => self.pause("asked for"),
-            Command::Runstop => self.pause("runstop"),
+            Command::Pause => self.pause("asked for", None),
+            Command::Runstop => self.pause("runstop", None),
             Command::Resume => self.resume(),
             Command::Restart => self.restart("asked for"),
             Command::TransitionTo { state } => self.force(self.state_called(&state)?, Forced::Transition),
             Command::JumpTo { state } => self.force(self.state_called(&state)?, Forced::Jump),
             Command::Set { var, value } => self.set(&var, &value)?,
-            Command::Break { .. }
-            | Command::Step
-            | Command::Rate { .. }
-            | Command::PutAtStart { .. }
-            | Command::FileChanged { .. } => {}
+            Command::Break { at, mode } => self.set_breakpoint(&at, mode)?,
+            Command::Step | Command::Rate { .. } | Command::PutAtStart { .. } | Command::FileChanged { .. } => {}
         }
         Ok(())
     }
 
-    fn hold(&mut self, edit: Edit) {
-        let changes = edit.comparison(&self.program).changes.clone();
-        let findings = super::findings::findings(&edit.program, |_| true);
-        let held = Held { changes, restarts: None, again: Vec::new(), discarded: Vec::new(), findings };
-        self.rare(What::Held(held));
-        self.held = Some(edit);
-    }
-
-    fn pause(&mut self, reason: &str) {
+    pub(super) fn pause(&mut self, reason: &str, at: Option<Arc<str>>) {
         if self.paused {
             return;
         }
         self.paused = true;
-        self.rare(What::Pause { reason: reason.to_string(), at: None });
+        self.rare(What::Pause { reason: reason.to_string(), at });
         if let Some(block) = self.program.on_pause {
             self.run(block);
         }
@@ -133,7 +118,7 @@ impl Engine {
         }
     }
 
-    fn state_called(&self, path: &str) -> Result<StateId, Refused> {
+    pub(super) fn state_called(&self, path: &str) -> Result<StateId, Refused> {
         let known = self.program.states.iter().map(|state| &*state.path);
         self.program.state(path).ok_or_else(|| refuse("state", path, known))
     }
@@ -166,7 +151,7 @@ impl Engine {
     }
 }
 
-fn refuse<'a>(what: &str, path: &str, known: impl Iterator<Item = &'a str>) -> Refused {
+pub(super) fn refuse<'a>(what: &str, path: &str, known: impl Iterator<Item = &'a str>) -> Refused {
     let near = nearest(path, known).map(|near| format!("; did you mean `{near}`?")).unwrap_or_default();
     Refused(format!("there is no {what} `{path}`{near}"))
 }

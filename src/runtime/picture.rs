@@ -1,5 +1,7 @@
 //! Looking at an engine from outside, by path: for tests and for those who ask rather than follow the records.
 
+use std::sync::Arc;
+
 use serde_json::Value;
 
 use super::engine::Engine;
@@ -8,7 +10,7 @@ use super::time::Time;
 use crate::model::*;
 
 impl Engine {
-    pub fn program(&self) -> &Program {
+    pub fn program(&self) -> &Arc<Program> {
         &self.program
     }
 

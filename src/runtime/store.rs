@@ -1,10 +1,9 @@
 //! The Lua side of a program: its variables as cells and its blocks as compiled functions. Both outlive an edit that
 //! doesn't concern them.
 
-use std::collections::{HashMap, VecDeque};
 use std::ops::Range;
-use std::sync::Arc;
 
+use super::reuse::{self, Key};
 use crate::lua::{self, Cell, Lua, SyntaxError};
 use crate::model::{Block, BlockId, MachineId, Matching, Program, VarId};
 
@@ -16,9 +15,6 @@ pub struct Store {
     /// Blocks that are not run again until something about them changes.
     stopped: usize,
 }
-
-/// What makes two blocks the same function: their text, the cells of the variables they use, the texts they require.
-type Key = (Arc<str>, Box<[Cell]>, Box<[Arc<str>]>);
 
 #[derive(Clone, Copy, Default)]
 pub struct Compiled {
@@ -106,23 +102,20 @@ impl Store {
     }
 
     fn take_over_blocks(&mut self, new: &Program) -> Vec<Uncompiled> {
-        let mut kept: HashMap<Key, VecDeque<Compiled>> = HashMap::new();
-        for (key, compiled) in self.keys.drain(..).zip(self.blocks.drain(..)) {
-            kept.entry(key).or_default().push_back(compiled);
-        }
+        let pairs = reuse::pairs(&self.keys, new, &self.cells);
+        let mut keys: Vec<Option<Key>> = self.keys.drain(..).map(Some).collect();
+        let old: Vec<Compiled> = std::mem::take(&mut self.blocks);
         self.stopped = 0;
         let mut uncompiled = Vec::new();
-        for (index, block) in new.blocks.iter().enumerate() {
-            let cells = block.uses.iter().map(|&var| self.cell(var)).collect();
-            let texts = block.requires.iter().map(|&module| new.module_text(module).clone()).collect();
-            let key = (block.code.clone(), cells, texts);
-            let mut compiled = match kept.get_mut(&key).and_then(VecDeque::pop_front) {
-                Some(compiled) => compiled,
-                None => self.compile(new, block).unwrap_or_else(|error| {
+        for ((index, block), pair) in new.blocks.iter().enumerate().zip(pairs) {
+            let kept = pair.and_then(|pair| Some((keys[pair].take()?, old[pair])));
+            let (key, mut compiled) = kept.unwrap_or_else(|| {
+                let compiled = self.compile(new, block).unwrap_or_else(|error| {
                     uncompiled.push(Uncompiled { block: BlockId(index as u32), error });
                     Compiled::default()
-                }),
-            };
+                });
+                (Key::of(new, block, &self.cells), compiled)
+            });
             compiled.machine = block.machine;
             compiled.uses_variables = !block.uses.is_empty();
             if let Some(function) = compiled.lua {
@@ -133,14 +126,19 @@ impl Store {
             self.blocks.push(compiled);
             self.keys.push(key);
         }
-        for function in kept.into_values().flatten().filter_map(|compiled| compiled.lua) {
-            self.lua.free_block(function);
-        }
+        let gone = keys.iter().zip(&old).filter(|(key, _)| key.is_some());
+        gone.filter_map(|(_, compiled)| compiled.lua).for_each(|function| self.lua.free_block(function));
         uncompiled
     }
 
     fn compile(&mut self, program: &Program, block: &Block) -> Result<Compiled, SyntaxError> {
-        let bound: Vec<(&str, Cell)> = block.uses.iter().map(|&var| (&*program[var].name, self.cell(var))).collect();
+        let renamed = program.alias.iter().filter_map(|alias| {
+            let var = block.uses.iter().find(|&&var| alias.means == var.into())?;
+            Some((&*alias.name, self.cell(*var)))
+        });
+        let own = block.uses.iter().map(|&var| (&*program[var].name, self.cell(var)));
+        // What is really called so counts before what was.
+        let bound: Vec<(&str, Cell)> = renamed.chain(own).collect();
         let function = self.lua.compile(&block.code, &bound)?;
         Ok(Compiled { lua: Some(function), ..Compiled::default() })
     }

@@ -13,7 +13,7 @@ use crate::lua::{Access, Checker};
 use crate::model::blocks::syntax_diagnostic;
 use crate::model::checks::check;
 use crate::model::modules::collect;
-use crate::model::{File, Program, Robot, resolve_files};
+use crate::model::{File, Program, Robot, alias, resolve_files};
 use crate::syntax::{Code, Diagnostic, FileId, Source, Span};
 
 pub struct Compiler {
@@ -71,6 +71,11 @@ impl Compiler {
 
     /// A program whose text is named by its path, with the files it imports and requires.
     pub fn compile(&mut self, source: Source) -> Result<Program, Rejected> {
+        self.compile_after(source, &Program::default())
+    }
+
+    /// A text that is to follow on a program that runs: names may still mean what they did there.
+    pub fn compile_after(&mut self, source: Source, running: &Program) -> Result<Program, Rejected> {
         let path = PathBuf::from(&*source.name);
         let Gathering { gathered, reached, diagnostics, .. } = Gathering::of(source, &*self.files, &self.gathered);
         (self.gathered, self.reached) = (gathered, reached);
@@ -82,7 +87,8 @@ impl Compiler {
             }
         }
         let unread = found.iter().any(Diagnostic::is_error);
-        let mut program = self.resolve(&folder(&path));
+        let mut program = self.resolve(running);
+        self.collect(&mut program, &folder(&path));
         let is_lua = |finding: &Diagnostic| matches!(finding.code, Code::LuaSyntax | Code::Smalltalk);
         if unread {
             // What can't be read is missing from the tree: what refers to it is not to blame.
@@ -100,11 +106,18 @@ impl Compiler {
         }
     }
 
-    fn resolve(&mut self, folder: &Path) -> Program {
+    fn resolve(&mut self, running: &Program) -> Program {
         let files: Vec<File> = self.gathered.iter().map(Gathered::file).collect();
-        let mut program = resolve_files(&files, &self.robots, &mut self.checker);
+        let program = resolve_files(&files, &self.robots, &mut self.checker, None);
+        let Some(alias) = alias::propose(running, &program) else { return program };
+        let renamed = resolve_files(&files, &self.robots, &mut self.checker, Some(alias));
+        if alias::holds(running, &renamed) { renamed } else { program }
+    }
+
+    /// The Lua files that the program's blocks require.
+    fn collect(&mut self, program: &mut Program, folder: &Path) {
         let mut shelf = Shelf { files: &*self.files, folder, known: &self.lua, reached: &mut self.reached };
-        collect(&mut program, |name| shelf.module(name));
+        collect(program, |name| shelf.module(name));
         self.lua.retain(|path, _| self.reached.iter().any(|reached| reached.path == *path));
         for index in 0..program.modules.len() {
             let file = program.modules[index].file;
@@ -114,7 +127,6 @@ impl Compiler {
                 None => drop(self.lua.insert(PathBuf::from(&*source.name), source)),
             }
         }
-        program
     }
 }
 

@@ -19,7 +19,7 @@ pub struct Driver {
     robots: Vec<Robot>,
     /// Said by a test instead of a robot, for the next step.
     injected: Vec<Input>,
-    /// What an edit or a forced state sent while paused: it leaves with the next step.
+    /// What an edit or a forced state sent while paused, or the step that a breakpoint ended: it leaves with the next step.
     held: Vec<(Arc<str>, Arc<str>, Value)>,
     /// A robot's file was saved with mistakes: it goes by what it read before.
     world_is_broken: bool,
@@ -85,11 +85,16 @@ impl Driver {
     pub fn command(&mut self, command: Command, sink: Sink) -> Result<(), Refused> {
         let held = matches!(
             command,
-            Command::Load(_) | Command::Restart | Command::TransitionTo { .. } | Command::JumpTo { .. }
+            Command::Load(_)
+                | Command::ApplyHeld
+                | Command::Restart
+                | Command::TransitionTo { .. }
+                | Command::JumpTo { .. }
         );
         let delivery = if held && self.engine.is_paused() { Delivery::Held } else { Delivery::Now };
         let result = match command {
-            Command::Load(edit) => self.load(edit),
+            Command::Load(edit) if !self.engine.holds_saves() => self.load(edit),
+            Command::ApplyHeld => self.apply_held(),
             Command::PutAtStart { ref bridge } => {
                 self.put_at_start(bridge);
                 self.engine.command(command)
@@ -157,6 +162,21 @@ impl Driver {
 
     fn load(&mut self, mut edit: Edit) -> Result<(), Refused> {
         let states = self.connect(&mut edit.program);
+        self.take_over(Command::Load(edit), states)
+    }
+
+    /// The robots of an edit are not touched before it is taken over.
+    fn apply_held(&mut self) -> Result<(), Refused> {
+        let Some(mut program) = self.engine.held_program().cloned() else {
+            return self.engine.command(Command::ApplyHeld);
+        };
+        let states = self.connect(&mut program);
+        self.engine.amend_held(program);
+        self.take_over(Command::ApplyHeld, states)
+    }
+
+    /// A program whose robots are connected.
+    fn take_over(&mut self, command: Command, states: Vec<BridgeState>) -> Result<(), Refused> {
         for robot in &self.robots {
             let (description, stale) = match &robot.bridge {
                 Some(bridge) => (bridge.description(), bridge.stale()),
@@ -164,7 +184,7 @@ impl Driver {
             };
             self.engine.describe(&robot.form.name, &description, stale);
         }
-        let result = self.engine.command(Command::Load(edit));
+        let result = self.engine.command(command);
         for state in states {
             self.engine.say(What::Bridge(state));
         }
@@ -213,9 +233,12 @@ impl Driver {
 
     fn hand_over(&mut self, delivery: Delivery, sink: Sink) {
         let Driver { engine, robots, held, .. } = self;
+        let mut timing = if engine.has_paused() { Delivery::Held } else { delivery };
         engine.drain(|record| {
             match &record.what {
-                What::Output { bridge, name, value } => match delivery {
+                // What pausing itself sends, to bring a robot to rest, is not to wait.
+                What::Pause { .. } => timing = delivery,
+                What::Output { bridge, name, value } => match timing {
                     Delivery::Now => send(robots, bridge, name, value),
                     Delivery::Held => held.push((bridge.clone(), name.clone(), value.clone())),
                 },

@@ -14,7 +14,7 @@ use super::engine_thread::{Commands, Library};
 use super::loader::Unreadable;
 use super::watch::{Saved, Watch, Watched};
 use super::{findings, loader, modules, robots};
-use crate::model::Program;
+use crate::model::{Edit, Program};
 use crate::runtime::Command;
 use crate::runtime::record::Finding;
 use crate::syntax::{FileId, Source};
@@ -68,7 +68,8 @@ impl Heard {
         let thread = Builder::new().name("edits".to_string()).spawn(move || {
             let compiler = compiler();
             let (beside, required) = (BTreeSet::new(), BTreeMap::new());
-            let desk = Desk { file, source: first, compiler, watch, commands, beside, required };
+            let desk =
+                Desk { file, source: first, compiler, watch, commands, running: Arc::default(), beside, required };
             desk.work(&inbox);
         })?;
         Ok(Edits { notes: self.notes, thread: Some(thread) })
@@ -93,6 +94,8 @@ struct Desk {
     compiler: Compiler,
     watch: Watch,
     commands: Commands,
+    /// What ran at the last save: held until the next one, so that it is dropped here and not on the engine's thread.
+    running: Arc<Program>,
     /// Files that the robots read.
     beside: BTreeSet<PathBuf>,
     /// Lua files that blocks have read while they ran.
@@ -138,10 +141,11 @@ impl Desk {
     }
 
     fn load(&mut self) {
-        let command = match self.compiler.compile(self.source.clone()) {
+        self.running = self.commands.running();
+        let command = match self.compiler.compile_after(self.source.clone(), &self.running) {
             Ok(program) => {
                 self.beside = self.files_of_robots(&program);
-                Command::Load(program.into())
+                Command::Load(Edit::of(&self.running, program))
             }
             Err(Rejected { sources, diagnostics }) => {
                 Command::Reject { findings: findings::errors_first(&diagnostics, &sources) }

@@ -3,7 +3,7 @@
 use std::ops::Deref;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, TryRecvError, channel};
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, MutexGuard};
 use std::thread::JoinHandle;
 use std::time::{Duration, Instant};
 
@@ -12,6 +12,7 @@ use super::pace::{Due, Pace, Rate};
 use super::robots::{Stopper, Workshop};
 use super::trace::Clock;
 use super::warden::Warden;
+use crate::model::Program;
 use crate::runtime::{Command, Options, Record, Time, What};
 
 #[derive(Clone, Debug)]
@@ -63,6 +64,7 @@ enum Message {
 pub struct Commands {
     messages: Sender<Message>,
     stoppers: Arc<Mutex<Vec<Stopper>>>,
+    program: Arc<Mutex<Arc<Program>>>,
 }
 
 impl Commands {
@@ -72,6 +74,11 @@ impl Commands {
         }
         // A thread that has ended has stopped its robots and said so.
         let _ = self.messages.send(Message::Command(command));
+    }
+
+    /// The program that runs, as of the last load: an edit can be compared with it beforehand.
+    pub fn running(&self) -> Arc<Program> {
+        Arc::clone(&locked(&self.program))
     }
 
     /// Halts every robot at once, without asking the engine.
@@ -108,6 +115,8 @@ impl EngineThread {
         let (messages, inbox) = channel();
         let stoppers: Arc<Mutex<Vec<Stopper>>> = Arc::default();
         let shared = Arc::clone(&stoppers);
+        let program: Arc<Mutex<Arc<Program>>> = Arc::default();
+        let published = Arc::clone(&program);
         let (alive, ended) = channel();
         let body = move || {
             let _alive: Sender<()> = alive;
@@ -119,7 +128,7 @@ impl EngineThread {
                     halt(&stoppers);
                     tell(News::Stuck);
                 });
-                Loop::new(driver, pacing, Arc::clone(&shared), &news).run(&inbox)
+                Loop::new(driver, pacing, Arc::clone(&shared), published, &news).run(&inbox)
             });
             let end = catch_unwind(run).unwrap_or_else(|panic| {
                 halt(&shared);
@@ -129,7 +138,7 @@ impl EngineThread {
         };
         let thread =
             std::thread::Builder::new().name("engine".to_string()).spawn(body).expect("a thread can be started");
-        EngineThread { commands: Commands { messages, stoppers }, thread: Some(thread), ended }
+        EngineThread { commands: Commands { messages, stoppers, program }, thread: Some(thread), ended }
     }
 
     pub fn commands(&self) -> &Commands {
@@ -150,10 +159,13 @@ impl Drop for EngineThread {
 }
 
 fn halt(stoppers: &Mutex<Vec<Stopper>>) {
-    let stoppers = stoppers.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
-    for stop in stoppers.iter() {
+    for stop in locked(stoppers).iter() {
         stop();
     }
+}
+
+fn locked<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {
+    shared.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
 }
 
 fn panic_text(panic: &(dyn std::any::Any + Send)) -> String {
@@ -166,6 +178,8 @@ struct Loop<'n, N: Fn(News)> {
     pacing: Pacing,
     pace: Pace,
     stoppers: Arc<Mutex<Vec<Stopper>>>,
+    /// The one that runs, for others to see.
+    program: Arc<Mutex<Arc<Program>>>,
     news: &'n N,
     batch: Vec<Record>,
     pending: Arc<()>,
@@ -188,7 +202,13 @@ impl Status {
 }
 
 impl<'n, N: Fn(News)> Loop<'n, N> {
-    fn new(driver: Driver, pacing: Pacing, stoppers: Arc<Mutex<Vec<Stopper>>>, news: &'n N) -> Self {
+    fn new(
+        driver: Driver,
+        pacing: Pacing,
+        stoppers: Arc<Mutex<Vec<Stopper>>>,
+        program: Arc<Mutex<Arc<Program>>>,
+        news: &'n N,
+    ) -> Self {
         let now = Instant::now();
         let pace = Pace::new(pacing.rate, Duration::ZERO);
         Loop {
@@ -196,6 +216,7 @@ impl<'n, N: Fn(News)> Loop<'n, N> {
             pacing,
             pace,
             stoppers,
+            program,
             news,
             batch: Vec::new(),
             pending: Arc::default(),
@@ -264,13 +285,13 @@ impl<'n, N: Fn(News)> Loop<'n, N> {
 
     fn command(&mut self, command: Command) {
         let real = self.started.elapsed();
-        let loads = matches!(command, Command::Load(_));
+        let loads = matches!(command, Command::Load(_) | Command::ApplyHeld);
         match &command {
             Command::Rate { hz } => match Rate::new(*hz) {
                 Some(rate) => self.pace.set_rate(rate, real),
                 None => return,
             },
-            Command::Resume => {
+            Command::Resume if self.driver.engine().is_paused() => {
                 self.pace.resume(real);
                 self.status = Status::new();
             }
@@ -285,7 +306,8 @@ impl<'n, N: Fn(News)> Loop<'n, N> {
         // A refusal is among the records.
         let _ = self.driver.command(command, &mut |record| self.batch.push(record));
         if loads {
-            *self.stoppers.lock().unwrap_or_else(|poisoned| poisoned.into_inner()) = self.driver.stoppers();
+            *locked(&self.stoppers) = self.driver.stoppers();
+            *locked(&self.program) = Arc::clone(self.driver.engine().program());
             if !std::mem::replace(&mut self.loaded, true) {
                 self.pace.resume(self.started.elapsed());
             }

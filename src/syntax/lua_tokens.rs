@@ -1,5 +1,6 @@
 //! Lua 5.4 as its lexer sees it: names, numbers, strings, comments, symbols, each with its place. Knows no grammar, and never refuses a text.
 
+use std::borrow::Cow;
 use std::ops::Range;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -42,6 +43,14 @@ fn meaningful(code: &str) -> impl Iterator<Item = (TokenKind, Vec<&str>)> + '_ {
     tokens(code)
         .filter(|token| !matches!(token.kind, TokenKind::Comment | TokenKind::UnclosedComment))
         .map(|token| (token.kind, lines(&code[token.range])))
+}
+
+/// The text of a string as Lua reads it, whatever the line ends are.
+pub fn with_line_feeds(text: &str) -> Cow<'_, str> {
+    match text.contains('\r') {
+        true => Cow::Owned(lines(text).join("\n")),
+        false => Cow::Borrowed(text),
+    }
 }
 
 fn lines(text: &str) -> Vec<&str> {

@@ -5,6 +5,7 @@ pub mod ast;
 pub mod diagnostic;
 pub mod findings;
 pub mod keyword;
+pub mod lua_names;
 pub mod lua_tokens;
 pub mod nearest;
 pub mod parser;

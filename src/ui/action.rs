@@ -25,6 +25,16 @@ pub enum Action {
     OutOf,
     Fold,
     Unfold,
+    SwitchOnEdit,
+    SwitchSaves,
+    HeldEdit,
+    ApplyHeld,
+    DropHeld,
+    GiveBack,
+    ToggleBreakpoint,
+    BreakWhen,
+    Breakpoints,
+    SwitchOnError,
     OpenEditor,
     Inspect,
     Follow,
@@ -61,6 +71,8 @@ pub enum Reach {
 pub enum Group {
     Robot,
     Program,
+    Edits,
+    Breaks,
     Values,
     Moving,
     Looking,
@@ -110,6 +122,18 @@ table! {
     Action::JumpTo, "jump-to", ["J"], "jump", "jump to the selected state: no action runs", Program, STATES;
     Action::Restart, "restart", ["Ctrl-R"], "", "restart the program from scratch", Program, Reach::Screen;
 
+    Action::SwitchOnEdit, "on-edit", ["M"], "", "an edit of an active state: restart, or keep it running", Edits, Reach::Screen;
+    Action::SwitchSaves, "saves", ["S"], "", "hold saves until you apply them, or let them count", Edits, Reach::Screen;
+    Action::ApplyHeld, "apply-held", ["A"], "apply", "apply the held edit", Edits, Reach::Screen;
+    Action::DropHeld, "drop-held", ["X"], "drop", "drop the held edit", Edits, Reach::Screen;
+    Action::HeldEdit, "held-edit", ["E"], "show", "what the held edit would do, and back", Edits, Reach::Screen;
+    Action::GiveBack, "give-back", ["u"], "tuned", "set values again that an edit or restart cost", Edits, Reach::Screen;
+
+    Action::ToggleBreakpoint, "breakpoint", ["B"], "", "pause at the selected state or transition, or no more", Breaks, Reach::Screen;
+    Action::BreakWhen, "break-when", ["C"], "", "pause when a condition becomes true: type it", Breaks, Reach::Screen;
+    Action::Breakpoints, "breakpoints", ["D"], "", "all breakpoints, to clear them", Breaks, Reach::Screen;
+    Action::SwitchOnError, "on-error", ["P"], "", "pause when something goes wrong, or go on", Breaks, Reach::Screen;
+
     Action::EditValue, "edit-value", ["e", "Enter"], "edit", "type a value: any Lua expression", Values, VALUES;
     Action::Increase, "increase", ["Right", "l", ">"], "more", "a little more; a boolean changes over", Values, VALUES;
     Action::Decrease, "decrease", ["Left", "h", "<"], "less", "a little less; a boolean changes over", Values, VALUES;
@@ -151,13 +175,23 @@ table! {
 }
 
 impl Group {
-    pub const ALL: [Group; 6] =
-        [Group::Robot, Group::Program, Group::Values, Group::Moving, Group::Looking, Group::Lrp];
+    pub const ALL: [Group; 8] = [
+        Group::Robot,
+        Group::Program,
+        Group::Edits,
+        Group::Breaks,
+        Group::Values,
+        Group::Moving,
+        Group::Looking,
+        Group::Lrp,
+    ];
 
     pub fn title(self) -> &'static str {
         match self {
             Group::Robot => "The robot",
             Group::Program => "The program",
+            Group::Edits => "Edits",
+            Group::Breaks => "Breakpoints (a transition: in the log or the detail)",
             Group::Values => "Values (in the variables)",
             Group::Moving => "Moving about",
             Group::Looking => "What is on the screen",
@@ -201,16 +235,19 @@ pub fn of_key_always(key: Key) -> Option<Action> {
     always.find(|entry| entry.has(key)).map(|entry| entry.action)
 }
 
-/// What the footer offers while a pane has the focus, without what is always there (STOP and help).
+/// What the footer offers while a pane has the focus, without what is always there (STOP and help): the pause, what
+/// there is only now and then, what belongs to the pane, the rest.
 pub fn offered(pane: Pane) -> impl Iterator<Item = &'static Entry> {
-    let shown = move |entry: &&Entry| {
-        !entry.label.is_empty() && entry.works_in(pane) && !matches!(entry.action, Action::Runstop | Action::Help)
-    };
-    let own = TABLE.iter().filter(shown).filter(|entry| matches!(entry.reach, Reach::Panes(_)));
-    let general = TABLE.iter().filter(shown).filter(|entry| !matches!(entry.reach, Reach::Panes(_)));
-    let pausing = |entry: &&Entry| matches!(entry.action, Action::Pause | Action::Step);
-    let first = general.clone().filter(pausing);
-    first.chain(own).chain(general.filter(move |entry| !pausing(entry)))
+    let mut shown: Vec<&Entry> = TABLE.iter().filter(|entry| !entry.label.is_empty() && entry.works_in(pane)).collect();
+    shown.retain(|entry| !matches!(entry.action, Action::Runstop | Action::Help));
+    shown.sort_by_key(|entry| match (entry.action, entry.reach) {
+        (Action::Pause, _) => 0,
+        (Action::ApplyHeld | Action::DropHeld | Action::HeldEdit | Action::GiveBack, _) => 1,
+        (Action::Step, _) => 2,
+        (_, Reach::Panes(_)) => 3,
+        _ => 4,
+    });
+    shown.into_iter()
 }
 
 /// The page docs/keys.md.

@@ -1,11 +1,15 @@
 //! The screen as a value: records and keys go in, effects and a frame come out.
 //! Knows nothing of threads, the clock or how a terminal is set up.
 
+mod answers;
+mod breaking;
 mod draw;
 mod follow;
+mod moment;
 mod movement;
 mod perform;
 mod reading;
+mod saves;
 mod typing;
 mod values;
 
@@ -15,21 +19,21 @@ use std::rc::Rc;
 use std::sync::Arc;
 
 use crossterm::event::{KeyEvent, KeyEventKind};
-use ratatui::layout::{Rect, Size};
+use ratatui::layout::Size;
 
 pub use movement::top_for;
 pub use reading::{Filter, LogRow, Reading, Shown};
-pub use typing::{Text, Typing};
+pub use typing::{Goal, Text, Typing};
 
 use self::follow::Follow;
+use self::moment::Moment;
 use super::action;
 use super::key::Key;
-use super::layout::{Extent, Figure, Layout, Pane, Simulated, Wish};
+use super::layout::{Extent, Figure, Pane};
 use super::panes::diagram::Diagram;
-use super::scope::Listing;
 use super::theme::Theme;
 use super::tree;
-use super::view::{Path, View};
+use super::view::{Choices, Path, ProblemKey, Renames, View};
 use crate::model::{MachineId, Program};
 use crate::runtime::command::Command;
 use crate::runtime::record::{Level, Log, Record, What};
@@ -40,6 +44,8 @@ pub struct Options {
     pub file: Arc<str>,
     /// Steps a second; 0: as fast as possible.
     pub rate: f64,
+    /// At the start; a person may choose otherwise.
+    pub choices: Choices,
     pub theme: Theme,
     /// Of the terminal at the start; later sizes come as events.
     pub size: Size,
@@ -94,6 +100,12 @@ pub struct App {
     nudged: Option<(Path, serde_json::Value)>,
     /// A value that was typed and is on its way to the engine, which may refuse it.
     sent: Option<Typing>,
+    /// Since the last save was taken over.
+    moment: Option<Moment>,
+    /// The step in which something went wrong last, and what.
+    fault: Option<(u64, ProblemKey)>,
+    /// The line of the detail a person is at.
+    detail_at: usize,
     /// First rows shown.
     tree_top: usize,
     values_top: usize,
@@ -112,7 +124,15 @@ pub enum Overlay {
     Help {
         top: usize,
     },
-    Value(Typing),
+    Typing(Typing),
+    /// What the held edit would do, from this line on.
+    Held {
+        top: usize,
+    },
+    /// All breakpoints; the one a person is at.
+    Breakpoints {
+        at: usize,
+    },
 }
 
 /// A command that had no effect comes back as an error from nowhere in the program.
@@ -122,8 +142,10 @@ fn is_refusal(log: &Log) -> bool {
 
 impl App {
     pub fn new(options: Options) -> App {
+        let mut view = View::new(options.rate);
+        view.choices = options.choices;
         App {
-            view: View::new(options.rate),
+            view,
             options,
             focus: Pane::Machines,
             figure: Figure::Graph,
@@ -140,6 +162,9 @@ impl App {
             halted: false,
             nudged: None,
             sent: None,
+            moment: None,
+            fault: None,
+            detail_at: 0,
             tree_top: 0,
             values_top: 0,
             detail_top: 0,
@@ -154,18 +179,20 @@ impl App {
             _ => None,
         };
         self.view.apply(record);
-        if let What::Set { var, by, .. } = &record.what
-            && **by == *"command"
-            && self.sent.as_ref().is_some_and(|typing| typing.var == *var)
-        {
-            self.sent = None;
-        }
         match &record.what {
-            What::Load(_) => self.program_changed(before),
+            What::Load(load) => {
+                self.rename(&Renames::of(&load.changes));
+                self.program_changed(before);
+                self.saved();
+            }
             What::Spawn { machine, by: None } if self.provisional => self.first_runs(machine),
             What::Enter { state } => self.entered(record.step, state),
-            What::Set { var, .. } if self.nudged.as_ref().is_some_and(|(path, _)| path == var) => self.nudged = None,
+            What::Set { var, by, .. } => self.was_set(var, by),
+            What::Breakpoints { .. } => self.breakpoints_changed(),
+            What::Error(fault) => self.fault = Some((record.step, ProblemKey::of(fault))),
+            What::Pause { reason, at } => self.paused(record.step, reason, at.as_ref()),
             What::Resume => self.halted = false,
+            What::Status { .. } => self.moment = self.moment.and_then(Moment::later),
             What::Log(log) if is_refusal(log) => {
                 self.message = Some(log.message.clone());
                 self.nudged = None;
@@ -212,126 +239,43 @@ impl App {
         self.dirty = false;
     }
 
-    pub fn view(&self) -> &View {
-        &self.view
-    }
-
-    pub fn options(&self) -> &Options {
-        &self.options
-    }
-
-    pub fn theme(&self) -> Theme {
-        self.options.theme
-    }
-
-    pub fn focus(&self) -> Pane {
-        self.focus
-    }
-
-    pub fn subject(&self) -> Pane {
-        self.subject
-    }
-
-    pub fn overlay(&self) -> &Overlay {
-        &self.overlay
-    }
-
-    pub fn message(&self) -> Option<&str> {
-        self.message.as_deref()
-    }
-
-    pub fn halted(&self) -> bool {
-        self.halted
-    }
-
-    pub fn follows(&self) -> bool {
-        self.follow.is_on()
-    }
-
-    /// The path of the selected machine or state.
-    pub fn selected(&self) -> Option<&Path> {
-        self.selected.as_ref()
-    }
-
-    /// The path of the selected variable or field.
-    pub fn selected_value(&self) -> Option<&Path> {
-        self.value.as_ref()
-    }
-
-    pub fn reading(&self) -> &Reading {
-        &self.reading
-    }
-
-    pub fn is_folded(&self, path: &str) -> bool {
-        self.folded.contains(path)
-    }
-
-    pub fn program(&self) -> Option<&Program> {
-        self.view.program.as_deref()
-    }
-
-    /// The machine that is drawn and whose variables are listed.
-    pub fn machine(&self) -> Option<MachineId> {
-        let program = self.program()?;
-        let selected = self.selected.as_ref().and_then(|path| tree::machine_of(program, path));
-        selected.or_else(|| program.tops.first().copied())
-    }
-
-    pub fn tree(&self) -> Vec<tree::Row> {
-        self.program().map_or_else(Vec::new, |program| tree::rows(program, &self.folded))
-    }
-
-    pub fn values(&self) -> Listing {
-        Listing::new(&self.view, self.machine())
-    }
-
-    pub fn tree_top(&self) -> usize {
-        self.tree_top
-    }
-
-    pub fn values_top(&self) -> usize {
-        self.values_top
-    }
-
-    pub fn detail_top(&self) -> usize {
-        self.detail_top
-    }
-
-    /// None where the screen is too small.
-    pub fn layout(&self, area: Rect) -> Option<Layout> {
-        Layout::new(area, self.wish())
-    }
-
-    fn wish(&self) -> Wish {
-        let simulated = if self.view.world.is_some() { Simulated::World } else { Simulated::Nothing };
-        let tree = self.program().map_or(0, |program| program.machines.len() + program.states.len());
-        Wish { focus: self.focus, figure: self.figure, extent: self.extent, simulated, tree }
-    }
-
-    /// The drawing of a machine for an area: kept from the last frame where nothing changed.
-    pub fn diagram(&self, program: &Program, machine: MachineId, area: Rect) -> Rc<Diagram> {
-        let key = (self.view.loads, machine, area.as_size());
-        let mut kept = self.diagram.borrow_mut();
-        match &*kept {
-            Some((of, diagram)) if *of == key => diagram.clone(),
-            _ => {
-                let diagram = Rc::new(Diagram::new(program, machine, area.width, area.height));
-                *kept = Some((key, diagram.clone()));
-                diagram
-            }
+    /// What was renamed stays selected, folded, nudged and typed at.
+    fn rename(&mut self, renames: &Renames) {
+        if renames.is_empty() {
+            return;
         }
+        self.selected = self.selected.as_ref().map(|path| renames.place(path));
+        self.folded = self.folded.iter().map(|path| renames.place(path)).collect();
+        self.value = self.value.as_ref().map(|path| renames.variable(path));
+        if let Some((path, _)) = &mut self.nudged {
+            *path = renames.variable(path);
+        }
+        if let Overlay::Typing(typing) = &mut self.overlay {
+            typing.goal.rename(renames);
+        }
+        self.sent.iter_mut().for_each(|typing| typing.goal.rename(renames));
     }
 
     fn program_changed(&mut self, before: Option<Arc<Program>>) {
         let Some(now) = self.view.program.clone() else { return };
-        let kept = match (&self.selected, &before) {
-            (Some(selected), Some(before)) => tree::survivor(before, &now, selected),
-            _ => None,
-        };
+        let kept = self.selected.as_ref().and_then(|selected| match &before {
+            _ if tree::element(&now, selected).is_some() => Some(selected.clone()),
+            Some(before) => tree::survivor(before, &now, selected),
+            None => None,
+        });
         let first = || now.tops.first().map(|&machine| now[machine].path.clone());
         self.selected = kept.or_else(first);
         self.folded.retain(|path| tree::element(&now, path).is_some());
         self.settle();
+    }
+
+    fn was_set(&mut self, var: &Path, by: &Path) {
+        if **by == *"command" && self.sent.as_ref().is_some_and(|typing| typing.goal.is_value_of(var)) {
+            self.sent = None;
+        }
+        if self.nudged.as_ref().is_some_and(|(path, _)| path == var) {
+            self.nudged = None;
+        }
     }
 
     /// What runs is looked at first, until a person selects something else.
@@ -344,13 +288,16 @@ impl App {
 
     fn key(&mut self, event: KeyEvent) -> Vec<Effect> {
         self.message = None;
+        self.moment = None;
         let key = Key::from(event);
         if let Some(action) = action::of_key_always(key) {
             return self.perform(action);
         }
         match &mut self.overlay {
-            Overlay::Value(_) => self.type_value(event),
+            Overlay::Typing(_) => self.type_on(event),
             Overlay::Help { .. } => self.key_in_help(key),
+            Overlay::Held { .. } => self.key_in_held(key),
+            Overlay::Breakpoints { .. } => self.key_in_breakpoints(key),
             Overlay::Nothing => match action::of_key(key, self.focus) {
                 Some(action) => self.perform(action),
                 None => self.say(format!("{key} does nothing here; ? lists the keys")),

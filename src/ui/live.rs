@@ -16,6 +16,7 @@ use super::editor::{Launch, Manner, Surroundings};
 use super::input::{Hold, Input, Received};
 use super::terminal::Screen;
 use super::theme::Theme;
+use super::view::Choices;
 use crate::runtime::{Command, Record};
 use crate::session::engine_thread::{End, News};
 use crate::session::headless::STUCK;
@@ -58,6 +59,11 @@ fn live(setup: Setup, trace: Option<PathBuf>) -> Result<ExitCode, String> {
         App::new(Options {
             file,
             rate: setup.pacing.rate.hz(),
+            choices: Choices {
+                on_edit: setup.options.on_edit,
+                saves: setup.options.saves,
+                on_error: setup.options.on_error,
+            },
             theme: Theme::from_no_color(std::env::var("NO_COLOR").ok().as_deref()),
             size,
         })

@@ -63,6 +63,16 @@ impl Theme {
         self.bold().patch(self.colour(Color::Red))
     }
 
+    /// Where the program will pause.
+    pub fn breakpoint(self) -> Style {
+        self.colour(Color::Red)
+    }
+
+    /// An edit that waits to be taken over.
+    pub fn held(self) -> Style {
+        self.bold().patch(self.colour(Color::LightBlue))
+    }
+
     pub fn key(self) -> Style {
         self.bold()
     }

@@ -5,12 +5,13 @@ mod large;
 mod live;
 mod timing;
 
+use std::sync::Arc;
 use std::time::Duration;
 
 use large::{Edit, Size};
 use lrp::lua::Checker;
-use lrp::model::diff::diff;
-use lrp::model::{Program, resolve};
+use lrp::model::checks::check;
+use lrp::model::{self, Program, resolve};
 use lrp::runtime::{Command, Engine, Options, Time, What};
 use lrp::syntax::{FileId, Source, parse};
 use timing::{best, median, timed};
@@ -53,7 +54,10 @@ fn main() {
         program.blocks.len(),
         text.len() as f64 / 1e3
     );
-    println!("{:22}{:>8}{:>8}{:>8}{:>8}{:>9}{:>10}", "edit", "parse", "check", "diff", "apply", "together", "(median)");
+    println!(
+        "{:22}{:>8}{:>8}{:>9}{:>8}{:>9}{:>10}",
+        "edit", "parse", "check", "compare", "apply", "together", "(median)"
+    );
     for (what, edited) in EDITS {
         Stages::of(edited).report(what);
     }
@@ -85,7 +89,7 @@ fn throughput(text: &str) {
 struct Stages {
     parse: Vec<Duration>,
     check: Vec<Duration>,
-    diff: Vec<Duration>,
+    compare: Vec<Duration>,
     apply: Vec<Duration>,
 }
 
@@ -107,10 +111,10 @@ impl Stages {
     /// In an engine that runs; the text of each round.
     fn of_edits(base: &str, text: impl Fn(usize) -> String) -> Stages {
         let (mut checker, mut engine) = (Checker::default(), Engine::new(Options::default()));
-        let mut old = Stages::default().round(None, base, &mut checker, &mut engine);
+        Stages::default().round(base, &mut checker, &mut engine);
         let mut stages = Stages::default();
         for round in 0..ROUNDS {
-            old = stages.round(Some(&old), &text(round), &mut checker, &mut engine);
+            stages.round(&text(round), &mut checker, &mut engine);
         }
         stages
     }
@@ -118,24 +122,28 @@ impl Stages {
     fn of_first_loads(text: &str) -> Stages {
         let mut stages = Stages::default();
         for _ in 0..ROUNDS {
-            stages.round(None, text, &mut Checker::default(), &mut Engine::new(Options::default()));
+            stages.round(text, &mut Checker::default(), &mut Engine::new(Options::default()));
         }
         stages
     }
 
-    fn round(&mut self, old: Option<&Program>, text: &str, checker: &mut Checker, engine: &mut Engine) -> Program {
+    fn round(&mut self, text: &str, checker: &mut Checker, engine: &mut Engine) {
         let source = Source::new("large.lrp", text);
         let mut parsed = None;
         self.parse.push(timed(|| parsed = Some(parse(&source, FileId(0)))));
         let parsed = parsed.expect("it was parsed");
         assert!(parsed.diagnostics.is_empty(), "{:?}", parsed.diagnostics[0]);
         let mut program = Program::default();
-        self.check.push(timed(|| program = resolve(&parsed.tree, source, &[], checker)));
-        assert!(program.findings.is_empty(), "{:?}", program.findings[0]);
-        if let Some(old) = old {
-            self.diff.push(timed(|| drop(std::hint::black_box(diff(old, &program)))));
-        }
-        let load = Command::Load(program.clone().into());
+        self.check.push(timed(|| {
+            program = resolve(&parsed.tree, source, &[], checker);
+            check(&mut program, &[], checker);
+        }));
+        assert!(program.findings.iter().all(|it| !it.is_error()), "{:?}", program.findings);
+        // Dropped beside the engine's thread, as in a session.
+        let running = Arc::clone(engine.program());
+        let mut edit = model::Edit::from(Program::default());
+        self.compare.push(timed(|| edit = model::Edit::of(&running, program)));
+        let load = Command::Load(edit);
         self.apply.push(timed(|| engine.command(load).expect("a load is never refused")));
         let restarted = |record: lrp::runtime::Record| matches!(record.what, What::Restart { .. });
         engine.drain(|record| assert!(!restarted(record), "these edits disturb nothing"));
@@ -143,15 +151,12 @@ impl Stages {
             engine.step(engine.now() + Time(100_000), &[]);
         }
         engine.discard_records();
-        program
     }
 
     fn report(&self, what: &str) {
-        let stages = [&self.parse, &self.check, &self.diff, &self.apply];
-        // Applying compares as well: what both took would count twice.
-        let counted = [&self.parse, &self.check, &self.apply];
+        let stages = [&self.parse, &self.check, &self.compare, &self.apply];
         let together: Vec<Duration> =
-            (0..self.parse.len()).map(|round| counted.iter().map(|stage| stage[round]).sum()).collect();
+            (0..self.parse.len()).map(|round| stages.iter().map(|stage| stage[round]).sum()).collect();
         print!("{what:22}");
         stages.iter().for_each(|stage| print!("{:8.2}", ms(best(stage))));
         println!("{:9.2}{:10.2}", ms(best(&together)), ms(median(&together)));

@@ -1,10 +1,12 @@
 //! A large program that runs at 1,000 Hz by the clock, as in a session, while its edits are compiled on another thread.
 
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 use std::thread;
 use std::time::{Duration, Instant};
 
 use super::large::{Edit, Size, program};
+use lrp::model;
 use lrp::runtime::{Command, Options, Time};
 use lrp::session::compile::Compiler;
 use lrp::session::driver::Driver;
@@ -28,12 +30,15 @@ pub fn gaps(size: Size, blocks: Option<usize>) -> Vec<Duration> {
 
 fn compile(saves: &Receiver<String>, compiled: &Sender<Command>) {
     let mut compiler = Compiler::new(Vec::new());
+    let mut running = Arc::default();
     for text in saves {
         let Ok(program) = compiler.compile(Source::new("large.lrp", text)) else {
             unreachable!("the large program is one")
         };
         // Nobody waits for the last one.
-        let _ = compiled.send(Command::Load(program.into()));
+        let edit = model::Edit::of(&running, program);
+        running = Arc::clone(&edit.program);
+        let _ = compiled.send(Command::Load(edit));
     }
 }
 

@@ -8,6 +8,7 @@ use lrp::runtime::record::{BridgeState, Element, Health, Op, What};
 use lrp::ui::app::{App, Event, Options};
 use lrp::ui::key::Key;
 use lrp::ui::theme::Theme;
+use lrp::ui::view::Choices;
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
 use ratatui::buffer::{Buffer, Cell};
@@ -20,7 +21,13 @@ use crate::story::{LINE_FOLLOWER, Story, program};
 /// The screen of a size after some records.
 pub fn screen(width: u16, height: u16, story: &Story) -> App {
     let size = Size::new(width, height);
-    let options = Options { file: "line_follower.lrp".into(), rate: 10.0, theme: Theme::Colours, size };
+    let options = Options {
+        file: "line_follower.lrp".into(),
+        rate: 10.0,
+        choices: Choices::default(),
+        theme: Theme::Colours,
+        size,
+    };
     let mut app = App::new(options);
     for record in &story.records {
         app.record(record);
@@ -77,7 +84,7 @@ fn letter(cell: &Cell) -> char {
     }
 }
 
-fn check(name: &str, app: &App) {
+pub fn check(name: &str, app: &App) {
     let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/frames").join(format!("{name}.txt"));
     let seen = frame(app);
     if std::env::var_os("UPDATE").is_some() {
@@ -111,8 +118,8 @@ fn the_outer_machine() {
 fn with_a_fault() {
     let mut story = Story::searching();
     story.at(81).fault("attempt to index a nil value (field 'range')", "follower/looking/lookalgo/lookright", 19, 12);
-    story.tell(What::Pause { reason: "an error in lookright".into(), at: None });
-    check_sizes("fault", &story, "4 Down i");
+    story.tell(What::Pause { reason: "error in lookright".into(), at: None });
+    check_sizes("fault", &story, "4 i");
 }
 
 #[test]
@@ -241,7 +248,13 @@ fn an_edit_that_restarts() {
 #[test]
 fn weight_alone_tells_without_colours() {
     let size = Size::new(80, 24);
-    let mut app = App::new(Options { file: "line_follower.lrp".into(), rate: 10.0, theme: Theme::Plain, size });
+    let mut app = App::new(Options {
+        file: "line_follower.lrp".into(),
+        rate: 10.0,
+        choices: Choices::default(),
+        theme: Theme::Plain,
+        size,
+    });
     Story::searching().records.iter().for_each(|record| app.record(record));
     check("plain_80x24", &app);
 }

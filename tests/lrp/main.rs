@@ -3,12 +3,14 @@
 mod bad_input;
 mod behaviors;
 mod binary;
+mod breaks;
 mod checks;
 mod codes;
 mod command_line;
 mod docs;
 mod editor;
 mod edits;
+mod edits_on_screen;
 mod found;
 mod frames;
 mod graph;

@@ -5,7 +5,8 @@ use std::path::PathBuf;
 use std::time::Duration;
 
 use lrp::lua::Limits;
-use lrp::runtime::{Command, Engine, Input, Options, Record, Time};
+use lrp::model::Edit;
+use lrp::runtime::{BreakAt, Breaking, Command, Engine, Input, OnEdit, OnError, Options, Record, Saves, Time};
 use lrp::session::compile::{Compiler, Rejected};
 use lrp::session::driver::Driver;
 use lrp::session::findings;
@@ -88,8 +89,9 @@ impl Stage {
 
     fn save(&mut self, text: String) {
         self.text.clone_from(&text);
-        let command = match self.compiler.compile(Source::new("case.lrp", text)) {
-            Ok(program) => Command::Load(program.into()),
+        let running = self.driver.engine().program();
+        let command = match self.compiler.compile_after(Source::new("case.lrp", text), running) {
+            Ok(program) => Command::Load(Edit::of(running, program)),
             Err(Rejected { sources, diagnostics }) => {
                 Command::Reject { findings: findings::errors_first(&diagnostics, &sources) }
             }
@@ -140,6 +142,7 @@ pub struct Head {
     length: f64,
     rate: f64,
     seed: u64,
+    on_edit: OnEdit,
     limit: Duration,
     /// Lua files, by module name.
     modules: Vec<(String, String)>,
@@ -153,6 +156,7 @@ impl Head {
             length: 1000.0,
             rate: 10.0,
             seed: 1,
+            on_edit: OnEdit::Restart,
             limit: Duration::from_millis(250),
             modules: Vec::new(),
             events: Vec::new(),
@@ -163,6 +167,7 @@ impl Head {
                 "for" => head.length = number(rest),
                 "rate" => head.rate = number(rest),
                 "seed" => head.seed = number(rest) as u64,
+                "on-edit" => head.on_edit = on_edit(rest),
                 "limit" => head.limit = Duration::from_secs_f64(number(rest) / 1000.0),
                 "module" => {
                     let (name, text) = split(rest);
@@ -186,6 +191,9 @@ impl Head {
         stage.period = 1000.0 / self.rate;
         let mut events: Vec<(f64, Event)> = self.events.into_iter().chain(saves).collect();
         events.sort_by(|a, b| a.0.total_cmp(&b.0));
+        if self.on_edit != OnEdit::Restart {
+            stage.command(Command::OnEdit { mode: self.on_edit });
+        }
         stage.event(Event::Save(text));
         let mut events = events.into_iter().peekable();
         let mut real = 0.0;
@@ -213,6 +221,14 @@ fn number(text: &str) -> f64 {
     unit * text.parse::<f64>().unwrap_or_else(|_| panic!("`{text}` is not a number"))
 }
 
+fn on_edit(text: &str) -> OnEdit {
+    match text {
+        "restart" => OnEdit::Restart,
+        "keep" => OnEdit::Keep,
+        _ => panic!("`{text}` is no way to edit"),
+    }
+}
+
 pub fn read_event(text: &str) -> Event {
     let (what, rest) = split(text);
     Event::Command(match what {
@@ -222,6 +238,10 @@ pub fn read_event(text: &str) -> Event {
         "restart" => Command::Restart,
         "runstop" => Command::Runstop,
         "rate" => Command::Rate { hz: number(rest) },
+        "on-edit" => Command::OnEdit { mode: on_edit(rest) },
+        "saves" => Command::Saves { mode: if rest == "hold" { Saves::Hold } else { Saves::Apply } },
+        "apply-held" => Command::ApplyHeld,
+        "drop-held" => Command::DropHeld,
         "transition-to" => Command::TransitionTo { state: rest.into() },
         "jump-to" => Command::JumpTo { state: rest.into() },
         "set" => {
@@ -234,6 +254,24 @@ pub fn read_event(text: &str) -> Event {
             let value = serde_json::from_str(value).expect("a message in JSON");
             return Event::Input(Input { bridge: bridge.into(), name: name.into(), value });
         }
+        "break" => Command::Break { at: place(rest), mode: Breaking::Set },
+        "clear" => Command::Break { at: place(rest), mode: Breaking::Clear },
+        "on-error" => Command::OnError { mode: if rest == "pause" { OnError::Pause } else { OnError::Continue } },
         _ => panic!("`{what}` is nothing that happens"),
     })
+}
+
+/// `state m/a`, `transition m: on go a -> b`, `condition x > 3`, `condition in m/a/n: x > 3`
+fn place(text: &str) -> BreakAt {
+    let (kind, rest) = split(text);
+    match kind {
+        "state" => BreakAt::State { state: rest.into() },
+        "transition" => BreakAt::Transition { transition: rest.into() },
+        "condition" => {
+            let in_machine = rest.strip_prefix("in ").and_then(|rest| rest.split_once(": "));
+            let (machine, condition) = in_machine.unwrap_or(("", rest));
+            BreakAt::Condition { condition: condition.into(), machine: machine.into() }
+        }
+        _ => panic!("`{text}` is no place for a breakpoint"),
+    }
 }

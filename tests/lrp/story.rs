@@ -106,6 +106,31 @@ impl Story {
         }))
     }
 
+    /// An edit that restarts the program, or starts machines again.
+    pub fn edit(
+        &mut self,
+        program: &Arc<Program>,
+        changes: Vec<Change>,
+        because: Option<&str>,
+        again: &[&str],
+    ) -> &mut Story {
+        let files = vec![File { name: "line_follower.lrp".into(), text: program.sources[0].text.clone() }];
+        self.tell(What::Load(Load {
+            changes,
+            restarted: because.is_some(),
+            reason: because.map(Into::into),
+            again: again.iter().map(|&machine| machine.into()).collect(),
+            discarded: Vec::new(),
+            findings: Vec::new(),
+            files,
+            program: Some(program.clone()),
+        }));
+        match because {
+            Some(reason) => self.tell(What::Restart { reason: reason.into() }),
+            None => self,
+        }
+    }
+
     pub fn spawn(&mut self, machine: &str, by: Option<&str>) -> &mut Story {
         self.tell(What::Spawn { machine: machine.into(), by: by.map(Into::into) })
     }

@@ -1,12 +1,12 @@
 //! The picture on the screen is the engine's, at any time; and whatever comes, the screen is drawn.
 
-use lrp::runtime::command::Command;
+use lrp::runtime::command::{BreakAt, Command};
 use lrp::runtime::engine::{Engine, Options};
 use lrp::runtime::record::*;
 use lrp::runtime::time::Time;
 use lrp::ui::app::{App, Event, Options as Screen};
 use lrp::ui::theme::Theme;
-use lrp::ui::view::{Edit, Mode, View};
+use lrp::ui::view::{Choices, Edit, Mode, View};
 use proptest::prelude::*;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Rect, Size};
@@ -247,7 +247,7 @@ proptest! {
         sizes in prop::collection::vec((1u16..130, 1u16..50), 1..6),
     ) {
         let size = Size::new(sizes[0].0, sizes[0].1);
-        let options = Screen { file: "a.lrp".into(), rate: 10.0, theme: Theme::Colours, size };
+        let options = Screen { file: "a.lrp".into(), rate: 10.0, choices: Choices::default(), theme: Theme::Colours, size };
         let mut app = App::new(options);
         for record in Story::searching().records.iter().take(whats.len() * 8) {
             app.record(record);
@@ -333,7 +333,37 @@ fn whats() -> impl Strategy<Value = What> {
         (bridge(), prop::sample::select(vec!["pose", "light"]), values())
             .prop_map(|(bridge, name, value)| What::Input { bridge, name: name.into(), value }),
         (bridge(), paths(), values()).prop_map(|(bridge, name, value)| What::Output { bridge, name, value }),
-        "\\PC{0,20}".prop_map(|reason| What::Pause { reason, at: None }),
+        ("\\PC{0,20}", prop::option::of(paths())).prop_map(|(reason, at)| What::Pause { reason, at }),
+        (paths(), paths(), any::<bool>()).prop_map(|(path, to, restarted)| {
+            let kinds = [Element::State, Element::Machine, Element::Variable];
+            let change = |kind| Change { op: Op::Renamed, kind, path: path.clone(), to: Some(to.clone()) };
+            What::Load(Load {
+                changes: kinds.map(change).to_vec(),
+                restarted,
+                reason: None,
+                again: vec![path.clone()],
+                discarded: vec![to.clone()],
+                findings: Vec::new(),
+                files: Vec::new(),
+                program: None,
+            })
+        }),
+        (paths(), paths()).prop_map(|(path, to)| {
+            let change = Change { op: Op::Renamed, kind: Element::State, path: path.clone(), to: Some(to) };
+            What::Held(Held {
+                changes: vec![change],
+                restarts: Some(format!("active state {path} changed")),
+                again: vec![path],
+                discarded: Vec::new(),
+                findings: Vec::new(),
+            })
+        }),
+        (paths(), "\\PC{0,20}").prop_map(|(state, text)| {
+            let state_break = BreakAt::State { state: state.clone() };
+            let condition = BreakAt::Condition { condition: text.into(), machine: state };
+            let all = [(state_break, Setter::Source), (condition, Setter::Command)];
+            What::Breakpoints { all: all.map(|(at, by)| Breakpoint { at, by }).to_vec() }
+        }),
         Just(What::Resume),
         "\\PC{0,20}".prop_map(|reason| What::Restart { reason }),
         (any::<f64>(), any::<f64>()).prop_map(|(rate, late)| What::Status { rate, late }),

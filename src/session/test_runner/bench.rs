@@ -12,8 +12,8 @@ use super::message::{self, Direction, hint};
 use super::options::Options;
 use super::readable;
 use super::written::Written;
-use crate::model::{Description, Program, Robot};
-use crate::runtime::record::{Fault, Finding};
+use crate::model::{Description, Edit, Program, Robot};
+use crate::runtime::record::{Breakpoint, Fault, Finding, Held};
 use crate::runtime::{self, Command, Input, Record, Time, What};
 use crate::session::compile::{Compiler, Rejected};
 use crate::session::driver::Driver;
@@ -83,7 +83,9 @@ impl Bench {
         }
         let robots = if options.bridge.is_some() { Robots::AsProgrammed } else { Robots::Fake };
         let workshop = Workshop { folder, seed: options.seed, robots };
-        let mut driver = Driver::new(runtime::Options { seed: options.seed, ..runtime::Options::default() }, workshop);
+        let &Options { seed, on_edit, on_error, .. } = options;
+        let mut driver =
+            Driver::new(runtime::Options { seed, on_edit, on_error, ..runtime::Options::default() }, workshop);
         driver.engine_mut().library(library);
         let mut pace = Pace::new(options.rate, std::time::Duration::ZERO);
         let due = pace.make();
@@ -100,7 +102,8 @@ impl Bench {
                 config.insert("world".to_string(), world.display().to_string().into());
             }
         }
-        self.command(Command::Load(program.into()))
+        let edit = Edit::of(self.driver.engine().program(), program);
+        self.command(Command::Load(edit))
     }
 
     /// A test that asks for a robot can't do without it.
@@ -124,7 +127,7 @@ impl Bench {
 
     pub fn edit(&mut self, text: String) -> Result<(), Complaint> {
         self.file = Source::new(self.file.name.clone(), text);
-        match self.compiler.compile(self.file.clone()) {
+        match self.compiler.compile_after(self.file.clone(), self.driver.engine().program()) {
             Ok(program) => self.load(program),
             Err(Rejected { sources, diagnostics }) => {
                 self.command(Command::Reject { findings: findings::errors_first(&diagnostics, &sources) })
@@ -150,21 +153,28 @@ impl Bench {
 
     /// Every step up to this much program time later; none while paused, when program time stands still.
     pub fn advance(&mut self, time: Time) -> Result<(), Complaint> {
-        if self.driver.engine().is_paused() {
-            return Ok(());
-        }
         let until = self.clock + time;
-        while self.due <= until {
+        while self.due <= until && !self.is_paused() {
             self.one_step()?;
         }
-        self.clock = until;
+        if !self.is_paused() {
+            self.clock = until;
+        }
         Ok(())
+    }
+
+    pub fn is_paused(&self) -> bool {
+        self.driver.engine().is_paused()
+    }
+
+    pub fn breakpoints(&self) -> &[Breakpoint] {
+        self.driver.engine().breakpoints()
     }
 
     /// So many steps, also while paused.
     pub fn steps(&mut self, count: u64) -> Result<(), Complaint> {
         for _ in 0..count {
-            if self.driver.engine().is_paused() {
+            if self.is_paused() {
                 self.command(Command::Step)?;
             }
             self.one_step()?;
@@ -224,6 +234,11 @@ impl Bench {
 
     pub fn records(&self) -> &[Record] {
         &self.records
+    }
+
+    /// What taking the held edit over would do; none where nothing is held.
+    pub fn held(&self) -> Option<&Held> {
+        self.driver.engine().held()
     }
 
     pub fn active(&self) -> Vec<String> {

@@ -5,7 +5,7 @@ use serde_json::Value;
 use super::bench::Trouble;
 use super::failure::Situation;
 use super::value::text;
-use crate::runtime::record::{Finding, Forced, Health, Load, Record, Taken, What};
+use crate::runtime::record::{Change, Finding, Forced, Health, Load, Record, Taken, What};
 use crate::runtime::{Breaking, Command, Engine};
 
 const SHOWN: usize = 8;
@@ -117,8 +117,7 @@ fn transition(taken: &Taken) -> String {
 }
 
 fn load(load: &Load) -> String {
-    let changes: Vec<String> =
-        load.changes.iter().take(4).map(|change| format!("{:?} {}", change.op, change.path).to_lowercase()).collect();
+    let changes: Vec<String> = load.changes.iter().take(4).map(change).collect();
     let more = match load.changes.len().saturating_sub(changes.len()) {
         0 => String::new(),
         more => format!(" and {more} more"),
@@ -126,6 +125,11 @@ fn load(load: &Load) -> String {
     let which = if changes.is_empty() { String::new() } else { format!(" {}{more}", changes.join(", ")) };
     let outcome = load.reason.as_ref().map_or(String::new(), |reason| format!("; restarted: {reason}"));
     format!("load{which}{outcome}")
+}
+
+fn change(Change { op, path, to, .. }: &Change) -> String {
+    let to = to.as_ref().map(|to| format!(" to {to}")).unwrap_or_default();
+    format!("{} {path}{to}", format!("{op:?}").to_lowercase())
 }
 
 fn command(command: &Command) -> String {

@@ -6,8 +6,8 @@ use ratatui::layout::{Position, Rect};
 
 use super::{App, Overlay};
 use crate::ui::format;
-use crate::ui::layout::Layout;
-use crate::ui::panes::{self, footer, help, status};
+use crate::ui::layout::{Layout, Pane};
+use crate::ui::panes::{self, breakpoints, footer, held, help, news, status};
 use crate::ui::pen::Pen;
 
 impl App {
@@ -25,12 +25,15 @@ impl App {
             return None;
         };
         status::draw(self, layout.status, buffer);
+        let body = Rect { y: area.y + 1, height: area.height - 2, ..area };
         match self.overlay {
-            Overlay::Help { top } => {
-                let body = Rect { y: area.y + 1, height: area.height - 2, ..area };
-                help::draw(self, top, body, buffer);
+            Overlay::Help { top } => help::draw(self, top, body, buffer),
+            Overlay::Held { top } => held::draw(self, top, body, buffer),
+            Overlay::Breakpoints { at } => breakpoints::draw(self, at, body, buffer),
+            Overlay::Nothing | Overlay::Typing(_) => {
+                self.paint_panes(&layout, buffer);
+                news::draw(self, layout.area(Pane::Log).unwrap_or(body), buffer);
             }
-            Overlay::Nothing | Overlay::Value(_) => self.paint_panes(&layout, buffer),
         }
         footer::draw(self, layout.footer, buffer)
     }

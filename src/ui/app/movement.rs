@@ -3,6 +3,7 @@
 use ratatui::layout::{Rect, Size};
 
 use super::{App, Overlay};
+use crate::ui::action::Action;
 use crate::ui::layout::{Extent, Figure, Layout, Pane, Wish};
 use crate::ui::panes::{detail, help};
 use crate::ui::tree::{self, Element};
@@ -19,6 +20,18 @@ pub enum Move {
 }
 
 impl Move {
+    pub fn of(action: Action) -> Option<Move> {
+        match action {
+            Action::Up => Some(Move::Up),
+            Action::Down => Some(Move::Down),
+            Action::PageUp => Some(Move::PageUp),
+            Action::PageDown => Some(Move::PageDown),
+            Action::First => Some(Move::First),
+            Action::Last => Some(Move::Last),
+            _ => None,
+        }
+    }
+
     /// Where it leads in a list of `length` rows, of which `page` are seen; from nowhere to the first.
     pub fn from(self, at: Option<usize>, length: usize, page: usize) -> Option<usize> {
         let last = length.checked_sub(1)?;
@@ -47,15 +60,13 @@ pub fn top_for(top: usize, at: Option<usize>, length: usize, height: usize) -> u
 
 impl App {
     pub(super) fn go(&mut self, how: Move) {
+        self.take_as_subject(self.focus);
         match self.focus {
             Pane::Machines => self.go_in_tree(how),
             Pane::Graph => self.go_in_graph(how),
             Pane::Variables => self.go_in_values(how),
             Pane::Log => self.go_in_log(how),
-            Pane::Detail => {
-                self.detail_top =
-                    self.scrolled(how, self.detail_top, detail::lines(self, self.columns(Pane::Detail)).len())
-            }
+            Pane::Detail => self.go_in_detail(how),
             Pane::World => (),
         }
     }
@@ -86,16 +97,25 @@ impl App {
         }
     }
 
-    /// Lines without a selection only scroll.
-    fn scrolled(&self, how: Move, top: usize, length: usize) -> usize {
-        let page = self.page(self.focus);
-        how.from(Some(top), length, page).unwrap_or(0).min(length.saturating_sub(page))
+    fn go_in_detail(&mut self, how: Move) {
+        let (length, page) = (detail::lines(self, self.columns(Pane::Detail)).len(), self.page(Pane::Detail));
+        self.detail_at = how.from(Some(self.detail_at), length, page).unwrap_or(0);
+        self.detail_top = top_for(self.detail_top, Some(self.detail_at), length, page);
+    }
+
+    /// Something else is told of.
+    pub(super) fn detail_anew(&mut self) {
+        (self.detail_at, self.detail_top) = (0, 0);
     }
 
     pub(super) fn go_in_help(&mut self, how: Move) {
-        let page = usize::from(self.options.size.height.saturating_sub(2));
-        let length = help::lines(self.options.size.width).len();
-        if let Overlay::Help { top } = &mut self.overlay {
+        self.scroll_overlay(how, help::lines(self.options.size.width).len());
+    }
+
+    /// Lines without a selection only scroll.
+    pub(super) fn scroll_overlay(&mut self, how: Move, length: usize) {
+        let page = usize::from(self.options.size.height.saturating_sub(3));
+        if let Overlay::Help { top } | Overlay::Held { top } = &mut self.overlay {
             *top = how.from(Some(*top), length, page).unwrap_or(0).min(length.saturating_sub(page));
         }
     }
@@ -105,7 +125,7 @@ impl App {
         self.folded.retain(|folded| !within(&path, folded) || *folded == path);
         self.selected = Some(path);
         self.provisional = false;
-        self.detail_top = 0;
+        self.detail_anew();
     }
 
     pub(super) fn go_into(&mut self) {
@@ -166,11 +186,16 @@ impl App {
         if let Some(figure) = Figure::of(pane) {
             self.figure = figure;
         }
-        if !matches!(pane, Pane::Detail | Pane::World) {
-            self.subject = pane;
-            self.detail_top = 0;
-        }
+        self.take_as_subject(pane);
         self.focus = pane;
+    }
+
+    /// The pane whose selection the detail tells of, where it has one.
+    fn take_as_subject(&mut self, pane: Pane) {
+        if self.subject != pane && !matches!(pane, Pane::Detail | Pane::World) {
+            self.subject = pane;
+            self.detail_anew();
+        }
     }
 
     /// The panes a person can go through with Tab: those seen, and where there is no place for it the graph.

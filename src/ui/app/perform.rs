@@ -31,6 +31,15 @@ impl App {
             Action::Decrease => return self.nudge(Nudge::Down),
             Action::IncreaseMuch => return self.nudge(Nudge::FarUp),
             Action::DecreaseMuch => return self.nudge(Nudge::FarDown),
+            Action::SwitchOnEdit => return self.switch_on_edit(),
+            Action::SwitchSaves => return self.switch_saves(),
+            Action::HeldEdit => return self.show_held(),
+            Action::ApplyHeld => return self.decide_held(Command::ApplyHeld),
+            Action::DropHeld => return self.decide_held(Command::DropHeld),
+            Action::GiveBack => return self.give_back(),
+            Action::ToggleBreakpoint => return self.toggle_breakpoint(),
+            Action::BreakWhen => return self.ask_for_condition(),
+            Action::SwitchOnError => return self.switch_on_error(),
             Action::OpenEditor => return self.open_editor(),
             Action::Quit => return vec![Effect::Quit],
             Action::Suspend => return vec![Effect::Suspend],
@@ -43,17 +52,15 @@ impl App {
             Action::NextPane => self.next_pane(1),
             Action::PreviousPane => self.next_pane(-1),
             Action::Focus(pane) => self.focus_on(pane),
-            Action::Up => self.go(Move::Up),
-            Action::Down => self.go(Move::Down),
-            Action::PageUp => self.go(Move::PageUp),
-            Action::PageDown => self.go(Move::PageDown),
-            Action::First => self.go(Move::First),
-            Action::Last => self.go(Move::Last),
+            Action::Up | Action::Down | Action::PageUp | Action::PageDown | Action::First | Action::Last => {
+                Move::of(action).into_iter().for_each(|how| self.go(how));
+            }
             Action::ToggleWorld => self.toggle(Figure::World),
             Action::Inspect => self.toggle(Figure::Detail),
             Action::Zoom => self.zoom(),
             Action::Filter => self.reading.filter = self.reading.filter.next(),
             Action::Back => self.back(),
+            Action::Breakpoints => self.overlay = Overlay::Breakpoints { at: 0 },
             Action::Help => self.overlay = Overlay::Help { top: 0 },
         }
         Vec::new()
@@ -62,13 +69,10 @@ impl App {
     pub(super) fn key_in_help(&mut self, key: Key) -> Vec<Effect> {
         match action::of_key(key, Pane::World) {
             Some(Action::Runstop) => return command(Command::Runstop),
-            Some(Action::Up) => self.go_in_help(Move::Up),
-            Some(Action::Down) => self.go_in_help(Move::Down),
-            Some(Action::PageUp) => self.go_in_help(Move::PageUp),
-            Some(Action::PageDown) => self.go_in_help(Move::PageDown),
-            Some(Action::First) => self.go_in_help(Move::First),
-            Some(Action::Last) => self.go_in_help(Move::Last),
-            _ => self.overlay = Overlay::Nothing,
+            other => match other.and_then(Move::of) {
+                Some(how) => self.go_in_help(how),
+                None => self.overlay = Overlay::Nothing,
+            },
         }
         Vec::new()
     }
@@ -102,7 +106,7 @@ impl App {
         }
     }
 
-    fn selected_element(&self) -> Option<(Path, Element)> {
+    pub(super) fn selected_element(&self) -> Option<(Path, Element)> {
         let path = self.selected.clone()?;
         let element = tree::element(self.program()?, &path)?;
         Some((path, element))
@@ -153,7 +157,9 @@ impl App {
     }
 
     fn open_editor(&mut self) -> Vec<Effect> {
+        let way = Some(Pane::Detail).filter(|&pane| pane == self.focus).and_then(|_| self.transition_in_detail());
         let place = match self.subject {
+            _ if way.is_some() => way.and_then(|id| self.place(self.program()?[id].span)),
             Pane::Variables => self.place_of_value(),
             Pane::Log => self.place_of_log(),
             _ => self.place_of_element(),

@@ -136,7 +136,7 @@ impl App {
             self.reading.since = self.view.journal.next();
         }
         self.reading.place = Some(rows[to].clone());
-        self.detail_top = 0;
+        self.detail_anew();
     }
 
     pub(super) fn read_newest(&mut self) {

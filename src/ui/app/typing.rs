@@ -1,4 +1,4 @@
-//! Typing a value for a variable: one line at the bottom, so that nothing is covered.
+//! Typing a value for a variable, or a condition to pause at: one line at the bottom, so that nothing is covered.
 
 use crossterm::event::{Event as TerminalEvent, KeyCode, KeyEvent, KeyModifiers};
 use tui_input::Input;
@@ -6,16 +6,24 @@ use tui_input::backend::crossterm::EventHandler;
 
 use super::values::NOTHING_SELECTED;
 use super::{App, Effect, Overlay};
-use crate::runtime::command::Command;
+use crate::runtime::command::{BreakAt, Breaking, Command};
 use crate::ui::format;
-use crate::ui::view::Path;
+use crate::ui::view::{Path, Renames};
 
 #[derive(Clone, Debug)]
 pub struct Typing {
-    /// The variable.
-    pub var: Path,
+    pub goal: Goal,
     pub input: Input,
     pub text: Text,
+}
+
+/// What the expression is for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Goal {
+    /// A variable's value.
+    Value(Path),
+    /// To pause when it becomes true, as seen from a machine; empty: from top level.
+    Condition(Path),
 }
 
 /// Whose words stand in the line.
@@ -26,6 +34,19 @@ pub enum Text {
     Typed,
 }
 
+impl Goal {
+    pub fn is_value_of(&self, var: &str) -> bool {
+        matches!(self, Goal::Value(path) if **path == *var)
+    }
+
+    pub(super) fn rename(&mut self, renames: &Renames) {
+        match self {
+            Goal::Value(var) => *var = renames.variable(var),
+            Goal::Condition(machine) => *machine = renames.place(machine),
+        }
+    }
+}
+
 impl App {
     pub(super) fn begin_typing(&mut self) -> Vec<Effect> {
         let Some(var) = self.value.clone() else { return self.say(NOTHING_SELECTED) };
@@ -33,12 +54,12 @@ impl App {
         self.message = self.refusal(&var);
         let value = self.view.variables.get(&var).and_then(|variable| variable.value.as_ref());
         let text = value.and_then(format::source).unwrap_or_default();
-        self.overlay = Overlay::Value(Typing { var, input: Input::new(text), text: Text::Present });
+        self.overlay = Overlay::Typing(Typing { goal: Goal::Value(var), input: Input::new(text), text: Text::Present });
         Vec::new()
     }
 
-    pub(super) fn type_value(&mut self, event: KeyEvent) -> Vec<Effect> {
-        let Overlay::Value(typing) = &mut self.overlay else { return Vec::new() };
+    pub(super) fn type_on(&mut self, event: KeyEvent) -> Vec<Effect> {
+        let Overlay::Typing(typing) = &mut self.overlay else { return Vec::new() };
         match event.code {
             KeyCode::Esc => self.overlay = Overlay::Nothing,
             KeyCode::Enter => return self.finish_typing(),
@@ -55,24 +76,35 @@ impl App {
     }
 
     fn finish_typing(&mut self) -> Vec<Effect> {
-        let Overlay::Value(typing) = &self.overlay else { return Vec::new() };
-        let (var, value) = (typing.var.to_string(), typing.input.value().trim().to_owned());
-        if value.is_empty() {
-            return self.say("a value is a Lua expression, as in 128 or {x = 1}; Esc leaves");
-        }
-        if let Some(refusal) = self.refusal(&var) {
-            return self.say(refusal);
-        }
-        if let Overlay::Value(typing) = std::mem::replace(&mut self.overlay, Overlay::Nothing) {
+        let Overlay::Typing(typing) = &self.overlay else { return Vec::new() };
+        let (goal, text) = (typing.goal.clone(), typing.input.value().trim().to_owned());
+        let command = match goal {
+            Goal::Value(_) if text.is_empty() => {
+                return self.say("a value is a Lua expression, as in 128 or {x = 1}; Esc leaves");
+            }
+            Goal::Condition(_) if text.is_empty() => {
+                return self.say("a condition is a Lua expression, as in speed > 0.3; Esc leaves");
+            }
+            Goal::Value(var) => {
+                if let Some(refusal) = self.refusal(&var) {
+                    return self.say(refusal);
+                }
+                Command::Set { var: var.to_string(), value: text }
+            }
+            Goal::Condition(machine) => {
+                Command::Break { at: BreakAt::Condition { condition: text.into(), machine }, mode: Breaking::Set }
+            }
+        };
+        if let Overlay::Typing(typing) = std::mem::replace(&mut self.overlay, Overlay::Nothing) {
             self.sent = Some(typing);
         }
-        vec![Effect::Command(Command::Set { var, value })]
+        vec![Effect::Command(command)]
     }
 
-    /// The engine refused a value: it can be mended where it was typed.
+    /// The engine refused what was typed: it can be mended where that was done.
     pub(super) fn type_again(&mut self) {
         if let (Some(typing), Overlay::Nothing) = (self.sent.take(), &self.overlay) {
-            self.overlay = Overlay::Value(typing);
+            self.overlay = Overlay::Typing(typing);
         }
     }
 }

@@ -81,6 +81,27 @@ impl Drawing {
         self.rooms.get(node).copied().flatten()
     }
 
+    /// The cell left of a node's name inside its box: free for a mark.
+    pub fn beside_name(&self, node: usize) -> Option<Point> {
+        let at = self.first(Part::Name(node))?;
+        let (frame, inside) = (self.boxes.get(node)?.x, self.cell(at.x.checked_sub(1)?, at.y).part);
+        Some(Point { x: at.x - u16::from(at.x > frame + 1 && inside == Part::Box(node)), ..at })
+    }
+
+    /// The cell left of an edge's label where that is blank or its own line, else the label's first: for a mark.
+    pub fn beside_label(&self, edge: usize) -> Option<Point> {
+        let at = self.first(Part::Label(edge))?;
+        let left = at.x.checked_sub(1).map(|x| Point { x, ..at });
+        let free = left.filter(|left| matches!(self.cell(left.x, left.y).part, Part::Blank | Part::Line(_)));
+        Some(free.unwrap_or(at))
+    }
+
+    fn first(&self, part: Part) -> Option<Point> {
+        let at = self.cells.iter().position(|cell| cell.part == part)?;
+        let width = usize::from(self.width).max(1);
+        Some(super::layout::point(at % width, at / width))
+    }
+
     /// All cells that show an edge: line, crossings, label and head, in reading order.
     pub fn edge_cells(&self, edge: usize) -> impl Iterator<Item = Point> + '_ {
         let width = usize::from(self.width).max(1);

@@ -1,6 +1,6 @@
 //! A machine's drawing for a place of a certain size, and which of the program's elements each part of the drawing is.
 
-use crate::model::{MachineId, Program, StateId};
+use crate::model::{MachineId, Program, StateId, TransitionId};
 use crate::ui::graph::{self, Drawing, EdgeKind, Options, Rows};
 use crate::ui::machine_graph;
 
@@ -35,6 +35,19 @@ impl Diagram {
             nodes: (0..graph.nodes.len()).map(|node| states.get(node).copied()).collect(),
             edges: graph.edges.iter().map(edge).collect(),
         }
+    }
+
+    /// The transition of the machine that an edge stands for; for an exit those out of its state that might be it.
+    pub fn transitions<'a>(
+        &'a self,
+        program: &'a Program,
+        machine: MachineId,
+        edge: usize,
+    ) -> impl Iterator<Item = TransitionId> + 'a {
+        let Edge { index, from, .. } = self.edges[edge];
+        let own = program[machine].transitions.get(index as usize).copied();
+        let exits = from.filter(|_| index == machine_graph::EXIT).map(|state| &program[state].exits);
+        own.into_iter().chain(exits.into_iter().flatten().copied())
     }
 
     pub fn node_of(&self, state: StateId) -> Option<usize> {

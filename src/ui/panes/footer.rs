@@ -5,17 +5,17 @@ use ratatui::layout::{Position, Rect};
 use unicode_width::UnicodeWidthChar;
 
 use crate::ui::action::{self, Action};
-use crate::ui::app::{App, Overlay, Text, Typing};
+use crate::ui::app::{App, Goal, Overlay, Text, Typing};
 use crate::ui::format;
 use crate::ui::pen::Pen;
-use crate::ui::view::Mode;
+use crate::ui::view::{Mode, name};
 
 /// Where the cursor stands, when there is one.
 pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Option<Position> {
     let theme = app.theme();
     let mut pen = Pen::new(buffer, area, 0);
     let typing = match app.overlay() {
-        Overlay::Value(typing) => Some(typing),
+        Overlay::Typing(typing) => Some(typing),
         _ => None,
     };
     pen.put_right(" ", theme.normal());
@@ -30,10 +30,23 @@ pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Option<Position> {
         }
         (None, None) => {
             match app.overlay() {
-                Overlay::Help { .. } => draw_key(app, "Esc", "back", &mut pen),
-                Overlay::Nothing | Overlay::Value(_) => draw_keys(app, &mut pen),
+                Overlay::Help { .. } => draw_given(app, &[("Esc", "back")], &mut pen),
+                Overlay::Held { .. } => draw_given(app, HELD, &mut pen),
+                Overlay::Breakpoints { .. } => draw_given(app, BREAKPOINTS, &mut pen),
+                Overlay::Nothing | Overlay::Typing(_) => draw_keys(app, &mut pen),
             }
             None
+        }
+    }
+}
+
+const HELD: &[(&str, &str)] = &[("Esc", "back"), ("A", "apply"), ("X", "drop"), ("M", "restart or keep")];
+const BREAKPOINTS: &[(&str, &str)] = &[("Esc", "back"), ("B", "clear"), ("X", "clear all")];
+
+fn draw_given(app: &App, keys: &[(&str, &str)], pen: &mut Pen) {
+    for (key, label) in keys {
+        if pen.room() >= format::width(key) + 1 + format::width(label) {
+            draw_key(app, key, label, pen);
         }
     }
 }
@@ -41,7 +54,12 @@ pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Option<Position> {
 /// With what is wrong beside it, if anything is.
 fn draw_typing(app: &App, typing: &Typing, message: Option<&str>, mut pen: Pen, area: Rect) -> Position {
     let theme = app.theme();
-    let needed = (format::width(&typing.var) + 3 + format::width(typing.input.value()) + 3).min(pen.room() / 2);
+    let (before, sign) = match &typing.goal {
+        Goal::Value(var) => (var.to_string(), " = "),
+        Goal::Condition(machine) if machine.is_empty() => ("pause when".into(), " "),
+        Goal::Condition(machine) => (format!("{}: pause when", name(machine)), " "),
+    };
+    let needed = (format::width(&before) + 3 + format::width(typing.input.value()) + 3).min(pen.room() / 2);
     match message {
         Some(message) => {
             let message = format::fit(message, pen.room() - needed);
@@ -52,7 +70,7 @@ fn draw_typing(app: &App, typing: &Typing, message: Option<&str>, mut pen: Pen, 
         }
         None => (),
     }
-    pen.put(&format::fit(&typing.var, pen.room() / 2), theme.bold()).put(" = ", theme.dim());
+    pen.put(&format::fit(&before, pen.room() / 2), theme.bold()).put(sign, theme.dim());
     let (start, room) = (pen.at(), pen.room().saturating_sub(1));
     let scroll = typing.input.visual_scroll(usize::from(room));
     let style = match typing.text {
@@ -77,7 +95,7 @@ fn after_columns(text: &str, columns: usize) -> String {
 fn draw_keys(app: &App, pen: &mut Pen) {
     let theme = app.theme();
     pen.put_right(" help", theme.dim()).put_right("?", theme.key()).put_right("  ", theme.normal());
-    for entry in action::offered(app.focus()) {
+    for entry in action::offered(app.focus()).filter(|entry| app.offers(entry.action)) {
         let key = entry.keys.first().copied().unwrap_or("");
         let (key, label) = (short(key), label(app, entry));
         if pen.room() < format::width(&key) + 1 + format::width(label) {

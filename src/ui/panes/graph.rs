@@ -4,15 +4,17 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::style::{Modifier, Style};
 
+use super::breakpoints::mark;
 use super::diagram::Diagram;
 use super::{Title, draw_nothing};
 use crate::model::{MachineId, Program, StateId};
+use crate::runtime::record::Setter;
 use crate::ui::app::App;
 use crate::ui::format;
-use crate::ui::graph::Part;
+use crate::ui::graph::{Part, Point};
 use crate::ui::layout::Pane;
 use crate::ui::machine_graph;
-use crate::ui::view::{Which, name};
+use crate::ui::view::{Which, name, transition_text};
 
 pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
     let Some((program, machine)) = app.program().zip(app.machine()) else {
@@ -47,6 +49,7 @@ fn path_in(path: &str, room: u16) -> String {
 struct Brush<'a> {
     app: &'a App,
     program: &'a Program,
+    machine: MachineId,
     diagram: &'a Diagram,
     active: Option<StateId>,
     selected: Option<StateId>,
@@ -63,6 +66,7 @@ impl<'a> Brush<'a> {
         Brush {
             app,
             program,
+            machine,
             diagram,
             active: view.active(path).and_then(|state| program.state(state)),
             selected: app.selected().and_then(|path| program.state(path)),
@@ -90,6 +94,40 @@ impl<'a> Brush<'a> {
         self.draw_heavy((left, top), area, buffer);
         for node in 0..self.diagram.nodes.len() {
             self.draw_inside(node, (left, top), area, buffer);
+        }
+        self.draw_breakpoints((left, top), area, buffer);
+    }
+
+    /// In a free cell beside the names of states and the labels of transitions: no glyph moves.
+    fn draw_breakpoints(&self, (left, top): (u16, u16), area: Rect, buffer: &mut Buffer) {
+        if self.app.view().breakpoints.is_empty() {
+            return;
+        }
+        let mut mark_at = |at: Point, by: Setter, style: Style| {
+            if let (Some(x), Some(y)) = (at.x.checked_sub(left), at.y.checked_sub(top))
+                && x < area.width
+                && y < area.height
+                && let Some(cell) = buffer.cell_mut(Position::new(area.x + x, area.y + y))
+            {
+                cell.set_symbol(mark(by)).set_style(style);
+            }
+        };
+        let colour = self.app.theme().breakpoint();
+        for (node, state) in self.diagram.nodes.iter().enumerate() {
+            let Some((state, at)) = state.zip(self.diagram.drawing.beside_name(node)) else { continue };
+            if let Some(by) = self.app.view().breaks_at_state(&self.program[state].path) {
+                let active = Some(state) == self.active;
+                mark_at(at, by, if active { self.node_style(node) } else { colour });
+            }
+        }
+        for edge in 0..self.diagram.edges.len() {
+            let by = self
+                .diagram
+                .transitions(self.program, self.machine, edge)
+                .find_map(|id| self.app.view().breaks_at_transition(&transition_text(self.program, id)));
+            if let Some((by, at)) = by.zip(self.diagram.drawing.beside_label(edge)) {
+                mark_at(at, by, colour);
+            }
         }
     }
 

@@ -3,6 +3,7 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
+use super::sheet;
 use crate::ui::action::Group;
 use crate::ui::app::App;
 use crate::ui::format;
@@ -22,7 +23,7 @@ pub fn lines(width: u16) -> Vec<Vec<Line>> {
     if width < 120 {
         return groups.concat().into_iter().map(|line| vec![line]).collect();
     }
-    let (left, right) = groups.split_at(3);
+    let (left, right) = groups.split_at(5);
     let (left, right) = (left.concat(), right.concat());
     let line = |lines: &[Line], i: usize| lines.get(i).cloned().unwrap_or(Line::Empty);
     (0..left.len().max(right.len())).map(|i| vec![line(&left, i), line(&right, i)]).collect()
@@ -34,17 +35,12 @@ fn group(group: Group) -> Vec<Line> {
 }
 
 pub fn draw(app: &App, top: usize, area: Rect, buffer: &mut Buffer) {
-    let theme = app.theme();
     let rows = lines(area.width);
-    let below = rows.len().saturating_sub(top + usize::from(area.height.saturating_sub(1)));
-    let mut title = Pen::new(buffer, area, 0);
-    let more = if below > 0 { format!(" {below} more: PgDn ") } else { String::new() };
-    title.put("─ ", theme.rule()).put("keys", theme.focused_title()).put(" ", theme.rule());
-    title.put_right("─", theme.rule()).put_right(&more, theme.dim()).fill("─", theme.rule());
-    for (y, row) in (1..area.height).zip(rows.iter().skip(top)) {
+    let inside = sheet::title(app, "keys", (top, rows.len()), area, buffer);
+    for (y, row) in (0..inside.height).zip(rows.iter().skip(top)) {
         let columns = area.width / row.len().max(1) as u16;
         for (i, line) in row.iter().enumerate() {
-            let part = Rect { x: area.x + columns * i as u16, width: columns, ..area };
+            let part = Rect { x: area.x + columns * i as u16, width: columns, ..inside };
             draw_line(app, line, Pen::new(buffer, part, y));
         }
     }

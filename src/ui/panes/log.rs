@@ -74,11 +74,13 @@ impl Words {
         let wide = columns >= WIDE;
         let time = if problem.count > 0 { format::clock(problem.last) } else { String::new() };
         let (file, number) = (&*problem.key.file, problem.key.line);
-        let (place, before) = match app.view().is_program(file) {
-            true => (line(number), name(&problem.state)),
-            false => (line(number), format::file_name(file)),
-        };
-        let before = if before.is_empty() { String::new() } else { format!("{before}: ") };
+        let place = line(number);
+        let file = if app.view().is_program(file) { "" } else { format::file_name(file) };
+        let before: String = [file, name(&problem.state)]
+            .iter()
+            .filter(|part| !part.is_empty())
+            .map(|part| format!("{part}: "))
+            .collect();
         let count = if problem.count > 1 { format!(" ×{}", problem.count) } else { String::new() };
         let mark = if wide { word(problem.gravity) } else { sign(problem.gravity) };
         let taken = 1 + if wide { 8 + format::width(mark) + 2 } else { 2 };
@@ -136,10 +138,10 @@ fn draw_entry(app: &App, entry: &Entry, place: Rect, buffer: &mut Buffer) {
 fn draw_change(app: &App, entry: &Entry, cause: &Cause, pen: &mut Pen) {
     let theme = app.theme();
     let text = format::width(&entry.text);
-    if let Some((_, number)) = &entry.place
-        && pen.room() >= text + 5
-    {
-        pen.right_column(&line(*number), 5, theme.dim());
+    let at = place(app, entry);
+    let columns = format::width(&at).max(5);
+    if !at.is_empty() && pen.room() >= text + columns {
+        pen.right_column(&at, columns, theme.dim());
     }
     pen.put(&entry.text, theme.normal());
     if let Some(name) = &cause.name {
@@ -152,9 +154,9 @@ fn draw_change(app: &App, entry: &Entry, cause: &Cause, pen: &mut Pen) {
 
 fn draw_log(app: &App, entry: &Entry, level: Level, columns: u16, pen: &mut Pen) {
     let theme = app.theme();
-    let at = entry.place.as_ref().map_or(String::new(), |(_, number)| line(*number));
+    let at = place(app, entry);
     if !at.is_empty() {
-        pen.right_column(&at, 5, theme.dim());
+        pen.right_column(&at, format::width(&at).max(5), theme.dim());
     }
     let (word, sign) = match level {
         Level::Error => ("error  ", "✗ "),
@@ -190,6 +192,17 @@ fn sign(gravity: Gravity) -> &'static str {
         Gravity::Error => "✗",
         Gravity::Warning => "!",
         Gravity::Hint => "·",
+    }
+}
+
+/// Where it was written, ` lib.lrp:24`: with the file where that isn't the program's own.
+fn place(app: &App, entry: &Entry) -> String {
+    match &entry.place {
+        Some((file, number)) if *number > 0 && !app.view().is_program(file) => {
+            format!(" {}:{number}", format::file_name(file))
+        }
+        Some((_, number)) => line(*number),
+        None => String::new(),
     }
 }
 

@@ -3,6 +3,7 @@
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
+use super::breakpoints::mark;
 use super::{Title, draw_nothing};
 use crate::model::{MachineId, Program, StateId};
 use crate::ui::app::App;
@@ -102,7 +103,8 @@ fn draw_numbers(app: &App, program: &Program, id: StateId, pen: &mut Pen) {
     let visits = view.states.get(&state.path).map_or(0, |state| state.visits);
     let visits = if visits == 0 { String::new() } else { format!("×{}", count(visits)) };
     let time = time(view, program, id);
-    let spare = |pen: &Pen| pen.room().saturating_sub(format::width(&state.name) + 2);
+    let marked = if view.breaks_at_state(&state.path).is_some() { 2 } else { 0 };
+    let spare = |pen: &Pen| pen.room().saturating_sub(format::width(&state.name) + 2 + marked);
     let times = if time.is_empty() { 0 } else { TIME };
     if spare(pen) >= times + VISITS {
         pen.right_column(&visits, VISITS, theme.dim());
@@ -144,6 +146,9 @@ fn count(n: u64) -> String {
 }
 
 fn draw_mark(app: &App, path: &str, pen: &mut Pen) {
+    if let Some(by) = app.view().breaks_at_state(path) {
+        pen.put(" ", app.theme().normal()).put(mark(by), app.theme().breakpoint());
+    }
     if let Some(gravity) = app.view().gravity(path) {
         pen.put(" !", app.theme().gravity(gravity));
     }

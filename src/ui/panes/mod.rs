@@ -1,12 +1,16 @@
 //! What each pane shows, row by row. A pane reads the app and writes cells; it changes nothing.
 
+pub mod breakpoints;
 pub mod detail;
 pub mod diagram;
 pub mod footer;
 pub mod graph;
+pub mod held;
 pub mod help;
 pub mod log;
 pub mod machines;
+pub mod news;
+pub mod sheet;
 pub mod status;
 pub mod variables;
 pub mod world;

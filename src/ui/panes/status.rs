@@ -4,11 +4,12 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
 
+use crate::runtime::command::{OnEdit, OnError, Saves};
 use crate::runtime::record::Health;
 use crate::ui::app::App;
 use crate::ui::format;
 use crate::ui::pen::Pen;
-use crate::ui::view::{Edit, Mode, is_own_doing};
+use crate::ui::view::{Choices, Edit, Mode, is_own_doing, name};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 enum Room {
@@ -38,23 +39,76 @@ pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) {
         draw_error_count(app, &mut pen);
     }
     pen.put(" ", theme.normal());
-    if room == Room::Ample || (room == Room::Usual && !has_message(app)) {
+    if room == Room::Ample || (room == Room::Usual && !has_message(app) && !has_choices(app)) {
         pen.put(&format::fit(format::file_name(&app.options().file), 24), theme.bold()).put("  ", theme.normal());
     }
     let (badge, mode) = badge(app);
     pen.put(&format!(" {badge} "), theme.mode(mode));
     pen.column("", 7 - format::width(badge).min(6), theme.normal());
-    draw_pace(app, mode, room, &mut pen);
+    if room > Room::Scarce || !paused_for_a_reason(mode) {
+        draw_pace(app, mode, room, &mut pen);
+    }
+    draw_choices(app, room, &mut pen);
     if room > Room::Scarce {
         draw_errors(app, &mut pen);
     }
     draw_bridges(app, room, &mut pen);
-    draw_edit(app, &mut pen);
     if let Mode::Paused { reason } = mode
-        && pen.room() > 12
-        && !is_own_doing(reason)
+        && paused_for_a_reason(mode)
     {
-        pen.put(reason, theme.mode(mode).remove_modifier(ratatui::style::Modifier::REVERSED));
+        let style = theme.mode(mode).remove_modifier(ratatui::style::Modifier::REVERSED);
+        let words = reason_in(reason, pen.room().saturating_sub(1));
+        pen.put(&words, style).put("  ", theme.normal());
+    }
+    draw_edit(app, &mut pen);
+}
+
+fn paused_for_a_reason(mode: &Mode) -> bool {
+    matches!(mode, Mode::Paused { reason } if !is_own_doing(reason))
+}
+
+/// With names instead of paths where there is little room, and then without saying that it is a breakpoint.
+fn reason_in(reason: &str, room: u16) -> String {
+    if format::width(reason) <= room {
+        return reason.into();
+    }
+    let words: Vec<&str> = reason.split(' ').map(name).collect();
+    let short = words.join(" ");
+    let rest = reason.strip_prefix("breakpoint: ").unwrap_or(&short);
+    let fitting = [&*short, rest].into_iter().find(|text| format::width(text) <= room);
+    fitting.unwrap_or_else(|| short.strip_prefix("breakpoint: ").unwrap_or(&short)).into()
+}
+
+/// Whether anything is to be said of how edits and errors are met.
+fn has_choices(app: &App) -> bool {
+    app.view().choices != Choices::default() || app.view().held.is_some()
+}
+
+/// What isn't as it is by default, and the edit that waits; their first letters where there is no room for words.
+fn draw_choices(app: &App, room: Room, pen: &mut Pen) {
+    let (theme, view) = (app.theme(), app.view());
+    let words = |ample: &'static str, usual, scarce| match room {
+        Room::Ample => ample,
+        Room::Usual => usual,
+        Room::Scarce => scarce,
+    };
+    let mut told = Vec::new();
+    if view.choices.on_edit == OnEdit::Keep {
+        told.push((words("edits keep", "keep", "keep"), theme.bold()));
+    }
+    match (&view.held, view.choices.saves) {
+        (Some(_), _) => told.push((words("1 edit held", "1 edit held", "1 held"), theme.held())),
+        (None, Saves::Hold) => told.push((words("saves held", "hold", "hold"), theme.held())),
+        (None, Saves::Apply) => (),
+    }
+    if view.choices.on_error == OnError::Pause {
+        told.push((words("errors pause", "on-error", "err"), theme.bold()));
+    }
+    let needed = told.iter().map(|(word, _)| format::width(word) + 1).sum::<u16>().saturating_sub(1);
+    let fits = needed <= pen.room();
+    for (word, style) in &told {
+        let word = if fits { word } else { &word[..1] };
+        pen.put(word, *style).put(if room > Room::Scarce { "  " } else { " " }, theme.normal());
     }
 }
 
@@ -95,7 +149,7 @@ fn draw_error_count(app: &App, pen: &mut Pen) {
 fn has_message(app: &App) -> bool {
     let view = app.view();
     let rejected = matches!(view.edit, Some(Edit::Rejected { .. }));
-    rejected || matches!(&view.mode, Mode::Paused { reason } if !is_own_doing(reason))
+    rejected || paused_for_a_reason(&view.mode)
 }
 
 fn badge(app: &App) -> (&'static str, &Mode) {
@@ -159,6 +213,9 @@ fn draw_edit(app: &App, pen: &mut Pen) {
     {
         text = format!("line {}", first.line);
     }
+    if pen.room() < SENTENCE && format::width(&text) + 3 > pen.room() {
+        text.truncate(text.find(':').unwrap_or(0));
+    }
     pen.put_right(" ", style).put_right(&text, style).put_right("  ", Style::new());
 }
 
@@ -166,8 +223,14 @@ fn edit_words(app: &App, edit: &Edit) -> (String, Style) {
     let theme = app.theme();
     match edit {
         Edit::Loaded => (String::new(), theme.dim()),
-        Edit::Taken { changes, restarted: None } => (format!("saved: {changes}"), theme.normal()),
-        Edit::Taken { changes, restarted: Some(_) } => (format!("restarted: {changes}"), theme.bold()),
+        Edit::Taken(outcome) if outcome.restarted.is_some() => {
+            (format!("restarted: {}", outcome.summary()), theme.bold())
+        }
+        Edit::Taken(outcome) if outcome.disturbs() => (format!("again: {}", outcome.summary()), theme.bold()),
+        Edit::Taken(outcome) => (format!("saved: {}", outcome.summary()), theme.normal()),
+        // That it is held is told beside it.
+        Edit::Held { changes } => (changes.clone(), theme.dim()),
+        Edit::Dropped => ("dropped".into(), theme.normal()),
         Edit::Restarted => ("restarted".into(), theme.normal()),
         Edit::Mended => ("mended".into(), theme.normal()),
         Edit::Rejected { first, .. } => (app.view().headline(first), theme.stop()),

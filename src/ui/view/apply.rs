@@ -1,15 +1,13 @@
 //! The fold: what each record changes in the picture.
 
-use std::sync::Arc;
-
 use serde_json::Value;
 
 use super::mode::is_own_doing;
 use super::problem::{Origin, Problem};
 use super::{Cause, Edit, Kind, Message, Mode, Path, TAKEN_KEPT, View, Which, World, name, owner};
-use crate::model::{Program, TransitionId, Trigger};
+use crate::model::{TransitionId, Trigger};
 use crate::runtime::command::Command;
-use crate::runtime::record::{BridgeState, Fault, Finding, Forced, Health, Load, Log, Record, Taken, What};
+use crate::runtime::record::{BridgeState, Fault, Forced, Health, Log, Record, Taken, What};
 use crate::ui::format;
 
 impl View {
@@ -19,6 +17,8 @@ impl View {
         match &record.what {
             What::Load(load) => self.load(load),
             What::Reject { findings } => self.reject(findings),
+            What::Held(held) => self.hold(held),
+            What::Breakpoints { all } => self.breakpoints.clone_from(all),
             What::Command { command } => self.command(command),
             What::Spawn { machine, by } => self.spawn(machine, by),
             What::Enter { state } => self.enter(state),
@@ -28,7 +28,7 @@ impl View {
             What::Set { var, value, by } => self.set(var, value, by),
             What::Input { bridge, name, value } => self.input(bridge, name, value),
             What::Output { bridge, name, value } => self.output(bridge, name, value),
-            What::Call { .. } | What::Reply { .. } | What::Held(_) | What::Breakpoints { .. } => (),
+            What::Call { .. } | What::Reply { .. } => (),
             What::Log(log) => self.log(log),
             What::Error(fault) => self.fault(fault),
             What::Pause { reason, .. } => self.pause(reason),
@@ -42,54 +42,14 @@ impl View {
         }
     }
 
-    fn load(&mut self, load: &Load) {
-        let edit = if self.loads == 0 { Edit::Loaded } else { Edit::of_load(load, self.edit.as_ref()) };
-        self.loads += 1;
-        if let Some(program) = &load.program {
-            self.take_over(program);
-        }
-        if load.restarted {
-            self.begin_again();
-        }
-        self.problems =
-            load.findings.iter().map(|finding| Problem::from_finding(finding, Origin::Check, self.t)).collect();
-        self.note_edit(&edit);
-        self.edit = Some(edit);
-    }
-
-    fn note_edit(&mut self, edit: &Edit) {
-        let text = match edit {
-            Edit::Loaded => "program loaded".into(),
-            Edit::Taken { changes, restarted: None } => format!("saved: {changes}"),
-            Edit::Taken { changes, restarted: Some(reason) } => format!("saved: {changes}; restarted: {reason}"),
-            Edit::Restarted => "restarted".into(),
-            Edit::Mended => "mended: what runs is what the files say".into(),
-            Edit::Rejected { first, .. } if first.line == 0 => self.headline(first),
-            Edit::Rejected { first, .. } => format!("not taken over: {}", self.headline(first)),
-        };
-        self.journal.note(self.t, text);
-    }
-
-    fn take_over(&mut self, program: &Arc<Program>) {
-        self.machines.retain(|path, _| program.machine(path).is_some());
-        self.states.retain(|path, _| program.state(path).is_some());
-        self.variables.retain(|path, _| program.var(path).is_some());
-        self.program = Some(program.clone());
-    }
-
-    fn reject(&mut self, findings: &[Finding]) {
-        self.problems.retain(|problem| problem.origin != Origin::Rejected);
-        let rejected = findings.iter().map(|finding| Problem::from_finding(finding, Origin::Rejected, self.t));
-        self.problems.splice(0..0, rejected);
-        let edit = Edit::of_reject(findings);
-        self.note_edit(&edit);
-        self.edit = Some(edit);
-    }
-
     fn command(&mut self, command: &Command) {
         match command {
             Command::Rate { hz } => (self.rate, self.actual) = (*hz, None),
             Command::Runstop => self.mode = Mode::Stopped,
+            Command::OnEdit { mode } => self.choices.on_edit = *mode,
+            Command::Saves { mode } => self.choices.saves = *mode,
+            Command::OnError { mode } => self.choices.on_error = *mode,
+            Command::DropHeld => self.drop_held(),
             Command::PutAtStart { bridge } => {
                 self.journal.note(self.t, format!("{bridge} put at its start"));
                 if let Some(world) = self.world.as_mut().filter(|world| *world.bridge == **bridge) {
@@ -174,7 +134,7 @@ impl View {
     }
 
     /// Machines inside it that are gone as well have records of their own; one that was forced may run on by itself.
-    fn discard(&mut self, path: &Path) {
+    pub(super) fn discard(&mut self, path: &Path) {
         if let Some(machine) = self.machines.get_mut(path) {
             machine.running = false;
             machine.active = None;
@@ -186,6 +146,7 @@ impl View {
 
     fn set(&mut self, var: &Path, value: &Value, by: &Path) {
         let t = self.t;
+        self.watch_tuned(var, value, by);
         let variable = self.variables.entry(var.clone()).or_default();
         variable.set(value, by, t);
         if **by == *"command" {
@@ -226,7 +187,10 @@ impl View {
             // The stop itself is told.
             "runstop" => (),
             _ if is_own_doing(reason) => self.journal.note(self.t, "paused"),
-            _ => self.journal.note(self.t, format!("paused: {reason}")),
+            _ => {
+                let reason = reason.strip_prefix("breakpoint: ").unwrap_or(reason);
+                self.journal.note(self.t, format!("paused: {reason}"));
+            }
         }
         if self.mode != Mode::Stopped {
             self.mode = Mode::Paused { reason: reason.into() };
@@ -266,11 +230,11 @@ impl View {
 
     /// One because of an edit was told with the edit.
     fn restart(&mut self, reason: &str) {
-        self.begin_again();
-        let told = matches!(&self.edit, Some(Edit::Taken { restarted: Some(told), .. }) if told == reason);
-        if is_own_doing(reason) && !matches!(self.edit, Some(Edit::Rejected { .. })) {
+        let told = matches!(&self.edit, Some(Edit::Taken(outcome)) if outcome.restarted.as_deref() == Some(reason));
+        if is_own_doing(reason) && !matches!(self.edit, Some(Edit::Rejected { .. } | Edit::Held { .. })) {
             self.edit = Some(Edit::Restarted);
         }
+        self.begin_again();
         match told {
             true => (),
             false if is_own_doing(reason) => self.journal.note(self.t, "restarted"),
@@ -285,7 +249,8 @@ impl View {
         }
     }
 
-    fn begin_again(&mut self) {
+    pub(super) fn begin_again(&mut self) {
+        self.remember_tuned(|_| true);
         self.machines.clear();
         self.states.clear();
         self.variables.values_mut().for_each(super::Variable::forget);

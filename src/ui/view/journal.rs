@@ -94,6 +94,15 @@ impl Journal {
         self.add(t, Kind::Note, text.into(), "".into(), None);
     }
 
+    /// Lines are history and stay; variables that are set again go on in theirs.
+    pub fn rename(&mut self, to: impl Fn(&Path) -> Path) {
+        for entry in &mut self.entries {
+            if let Kind::Hand(hand) = &mut entry.kind {
+                hand.var = to(&hand.var);
+            }
+        }
+    }
+
     /// Newest first.
     pub fn newest_first(&self) -> impl Iterator<Item = &Entry> {
         self.entries.iter().rev()

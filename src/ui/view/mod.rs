@@ -2,6 +2,7 @@
 //! Knows nothing of keys, panes or the terminal.
 
 mod apply;
+mod breakpoints;
 mod bridge;
 mod edit;
 mod evidence;
@@ -9,23 +10,30 @@ mod journal;
 mod machine;
 mod mode;
 mod problem;
+mod renames;
+mod saves;
+mod tuned;
 mod variable;
 mod world;
 
 use std::collections::{BTreeMap, VecDeque};
 use std::sync::Arc;
 
+use serde_json::Value;
+
+pub use breakpoints::transition_text;
 pub use bridge::{Bridge, Message};
-pub use edit::Edit;
+pub use edit::{Edit, Outcome, describe};
 pub use journal::{Cause, Entry, Journal, Kind};
 pub use machine::{Machine, State, Timeout, Which};
-pub use mode::{Mode, is_own_doing};
+pub use mode::{Choices, Mode, is_own_doing};
 pub use problem::{Gravity, Origin, Problem, ProblemKey};
+pub use renames::Renames;
 pub use variable::Variable;
 pub use world::World;
 
 use crate::model::Program;
-use crate::runtime::record::{Finding, Taken};
+use crate::runtime::record::{Breakpoint, Finding, Held, Taken};
 use crate::runtime::time::Time;
 use crate::ui::format::file_name;
 
@@ -37,6 +45,7 @@ pub const TAKEN_KEPT: usize = 200;
 #[derive(Clone, Debug, PartialEq)]
 pub struct View {
     pub mode: Mode,
+    pub choices: Choices,
     /// Steps a second, as asked for; 0: as fast as possible.
     pub rate: f64,
     /// Steps a second as they are, evened out over some seconds.
@@ -52,6 +61,8 @@ pub struct View {
     pub machines: BTreeMap<Path, Machine>,
     pub states: BTreeMap<Path, State>,
     pub variables: BTreeMap<Path, Variable>,
+    /// Values set by hand that initial values replaced since.
+    pub tuned: BTreeMap<Path, Value>,
     pub bridges: BTreeMap<Path, Bridge>,
     /// The latest transitions, oldest first.
     pub taken: VecDeque<(Time, Taken)>,
@@ -60,6 +71,10 @@ pub struct View {
     pub problems: Vec<Problem>,
     /// The outcome of the last save.
     pub edit: Option<Edit>,
+    /// The edit that waits, with what it would do.
+    pub held: Option<Held>,
+    /// All there are.
+    pub breakpoints: Vec<Breakpoint>,
     pub world: Option<World>,
     /// How many times a program was taken over.
     pub loads: u64,
@@ -70,6 +85,7 @@ impl View {
     pub fn new(rate: f64) -> View {
         View {
             mode: Mode::Running,
+            choices: Choices::default(),
             rate,
             actual: None,
             late: 0.0,
@@ -80,11 +96,14 @@ impl View {
             machines: BTreeMap::new(),
             states: BTreeMap::new(),
             variables: BTreeMap::new(),
+            tuned: BTreeMap::new(),
             bridges: BTreeMap::new(),
             taken: VecDeque::new(),
             journal: Journal::default(),
             problems: Vec::new(),
             edit: None,
+            held: None,
+            breakpoints: Vec::new(),
             world: None,
             loads: 0,
         }

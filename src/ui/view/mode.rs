@@ -1,4 +1,6 @@
-//! Whether the program runs.
+//! Whether the program runs, and what edits and errors do to it.
+
+use crate::runtime::command::{OnEdit, OnError, Saves};
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum Mode {
@@ -8,6 +10,14 @@ pub enum Mode {
     },
     /// The robot was told to stop; nothing runs until a person resumes.
     Stopped,
+}
+
+/// What a person chose for edits and errors.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Choices {
+    pub on_edit: OnEdit,
+    pub saves: Saves,
+    pub on_error: OnError,
 }
 
 /// A person who pressed the key knows why it is paused.

@@ -34,6 +34,16 @@ pub enum Gravity {
     Error,
 }
 
+impl Gravity {
+    pub fn word(self) -> &'static str {
+        match self {
+            Gravity::Error => "error",
+            Gravity::Warning => "warning",
+            Gravity::Hint => "hint",
+        }
+    }
+}
+
 /// Where a problem comes from, and so what makes it go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Origin {
@@ -45,12 +55,16 @@ pub enum Origin {
     Rejected,
 }
 
+impl ProblemKey {
+    pub fn of(fault: &Fault) -> ProblemKey {
+        ProblemKey { code: fault.code.clone(), file: fault.file.clone(), line: fault.line, column: fault.column }
+    }
+}
+
 impl Problem {
     pub fn from_fault(fault: &Fault, at: Time) -> Problem {
-        let key =
-            ProblemKey { code: fault.code.clone(), file: fault.file.clone(), line: fault.line, column: fault.column };
         Problem {
-            key,
+            key: ProblemKey::of(fault),
             gravity: Gravity::Error,
             origin: Origin::Run,
             message: fault.message.clone(),

@@ -39,6 +39,11 @@ impl Variable {
         self.previous = None;
     }
 
+    /// Whether a person gave it the value it has.
+    pub fn is_tuned(&self) -> bool {
+        self.value.is_some() && *self.by == *"command"
+    }
+
     pub fn number(&self) -> Option<f64> {
         self.value.as_ref()?.as_f64()
     }

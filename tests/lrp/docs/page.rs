@@ -9,7 +9,7 @@ pub struct Example {
     pub text: String,
     /// What it may import: the files shown before it on its page, by name.
     pub files: Vec<(String, String)>,
-    /// Lines of its trace that say what happens to the program: an input, a command.
+    /// Lines of its trace that say what happens to the program: an input, a command, a save.
     pub fed: Vec<String>,
     /// Lines of its trace that say what it does.
     pub trace: Vec<String>,
@@ -119,5 +119,5 @@ pub fn examples() -> Vec<Example> {
 }
 
 fn is_fed(line: &str) -> bool {
-    matches!(line.split(' ').nth(1), Some("input" | "command"))
+    matches!(line.split(' ').nth(1), Some("input" | "command" | "save"))
 }

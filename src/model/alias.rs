@@ -1,0 +1,69 @@
+//! A rename that is saved in two goes: the declaration has its new name, the uses still say the old one. Found by
+//! comparing with the program that runs.
+
+use super::element::{Alias, ElementId, Kind};
+use super::matching::{Key, Matching, Side};
+use super::program::Program;
+
+/// The one element that the one missing name of a program could mean, going by what it meant in the program that runs.
+pub fn propose(running: &Program, program: &Program) -> Option<Alias> {
+    let (kind, name) = only_missing(program)?;
+    let matching = Matching::of(running, program);
+    let renamed = running.alias(kind, name);
+    let named = running.all(kind).filter(|&was| **running.name(was) == *name && matching.now(was).is_none());
+    let mut found = named.chain(renamed).filter_map(|was| match matching.now(was) {
+        Some(now) => Some(now),
+        None => twin(running, was, program, &matching, name),
+    });
+    let means = found.next()?;
+    found.next().is_none().then(|| Alias { name: name.into(), means })
+}
+
+/// Whether a program that was resolved with an alias shows it to be a rename: all names mean something now.
+pub fn holds(running: &Program, program: &Program) -> bool {
+    let Some(alias) = &program.alias else { return true };
+    let was = Matching::of(running, program).was(alias.means);
+    let had_it =
+        |was: ElementId| *running.name(was) == alias.name || running.alias(alias.means.kind, &alias.name) == Some(was);
+    was.is_some_and(had_it) && Matching::is_complete(program)
+}
+
+/// What the errors of a program are about, where all of them are about one name.
+fn only_missing(program: &Program) -> Option<(Kind, &str)> {
+    let mut missing = program.findings.iter().filter(|finding| finding.is_error()).map(|finding| {
+        let name = program.source(finding.span).slice(finding.span);
+        Kind::missing(finding.code).map(|kind| (kind, name))
+    });
+    let first = missing.next()??;
+    missing.all(|other| other == Some(first)).then_some(first)
+}
+
+/// The one new element beside an element that is gone with the same text, which may still use the old name.
+fn twin(running: &Program, was: ElementId, program: &Program, matching: &Matching, name: &str) -> Option<ElementId> {
+    let (old, new) = (Side::Old(running, program), Side::New(program));
+    let scope = running.scope(was);
+    let scope_now = match scope {
+        Some(scope) => Some(matching.now(scope)?),
+        None => None,
+    };
+    let wanted = text(old, matching, was, name);
+    let gone = running.all(was.kind).filter(|&it| running.scope(it) == scope && matching.now(it).is_none());
+    let added = program.all(was.kind).filter(|&it| program.scope(it) == scope_now && matching.was(it).is_none());
+    let is_only_one = gone.filter(|&it| text(old, matching, it, name) == wanted).count() == 1;
+    let mut twins = added.filter(|&it| text(new, matching, it, name) == wanted);
+    let twin = twins.next().filter(|_| is_only_one);
+    twin.filter(|_| twins.next().is_none())
+}
+
+/// An element's text, where the missing name may mean what is gone, the element itself included.
+fn text<'p>(side: Side<'p>, matching: &Matching, element: ElementId, missing: &str) -> Vec<Key<'p>> {
+    let mut keys = side.body(matching, element);
+    for key in &mut keys {
+        match *key {
+            Key::Subject(kind) => *key = Key::Along(kind),
+            Key::Unknown(kind, name) if kind == element.kind && name == missing => *key = Key::Along(kind),
+            _ => {}
+        }
+    }
+    keys
+}

@@ -1,0 +1,152 @@
+//! What panes ask of the app: it answers and changes nothing.
+
+use std::rc::Rc;
+
+use ratatui::layout::Rect;
+
+use super::{App, Options, Overlay, Reading};
+use crate::model::{MachineId, Program};
+use crate::ui::action::Action;
+use crate::ui::layout::{Layout, Pane, Simulated, Wish};
+use crate::ui::panes::diagram::Diagram;
+use crate::ui::scope::Listing;
+use crate::ui::theme::Theme;
+use crate::ui::tree;
+use crate::ui::view::{Edit, Outcome, Path, View};
+
+impl App {
+    pub fn view(&self) -> &View {
+        &self.view
+    }
+
+    pub fn options(&self) -> &Options {
+        &self.options
+    }
+
+    pub fn theme(&self) -> Theme {
+        self.options.theme
+    }
+
+    pub fn focus(&self) -> Pane {
+        self.focus
+    }
+
+    pub fn subject(&self) -> Pane {
+        self.subject
+    }
+
+    pub fn overlay(&self) -> &Overlay {
+        &self.overlay
+    }
+
+    pub fn message(&self) -> Option<&str> {
+        self.message.as_deref()
+    }
+
+    pub fn halted(&self) -> bool {
+        self.halted
+    }
+
+    pub fn follows(&self) -> bool {
+        self.follow.is_on()
+    }
+
+    /// The path of the selected machine or state.
+    pub fn selected(&self) -> Option<&Path> {
+        self.selected.as_ref()
+    }
+
+    /// The path of the selected variable or field.
+    pub fn selected_value(&self) -> Option<&Path> {
+        self.value.as_ref()
+    }
+
+    pub fn reading(&self) -> &Reading {
+        &self.reading
+    }
+
+    pub fn is_folded(&self, path: &str) -> bool {
+        self.folded.contains(path)
+    }
+
+    pub fn program(&self) -> Option<&Program> {
+        self.view.program.as_deref()
+    }
+
+    /// The machine that is drawn and whose variables are listed.
+    pub fn machine(&self) -> Option<MachineId> {
+        let program = self.program()?;
+        let selected = self.selected.as_ref().and_then(|path| tree::machine_of(program, path));
+        selected.or_else(|| program.tops.first().copied())
+    }
+
+    pub fn tree(&self) -> Vec<tree::Row> {
+        self.program().map_or_else(Vec::new, |program| tree::rows(program, &self.folded))
+    }
+
+    pub fn values(&self) -> Listing {
+        Listing::new(&self.view, self.machine())
+    }
+
+    pub fn tree_top(&self) -> usize {
+        self.tree_top
+    }
+
+    pub fn values_top(&self) -> usize {
+        self.values_top
+    }
+
+    pub fn detail_top(&self) -> usize {
+        self.detail_top
+    }
+
+    /// The line of the detail a person is at.
+    pub fn detail_at(&self) -> usize {
+        self.detail_at
+    }
+
+    /// Whether a key does anything now: some only where there is something to do it with.
+    pub fn offers(&self, action: Action) -> bool {
+        match action {
+            Action::ApplyHeld | Action::DropHeld | Action::HeldEdit => self.view.held.is_some(),
+            Action::GiveBack => self.view.lost().next().is_some(),
+            _ => true,
+        }
+    }
+
+    /// What the last save did, while it is news.
+    pub fn news(&self) -> Option<&Outcome> {
+        match &self.view.edit {
+            Some(Edit::Taken(outcome)) if self.moment.is_some() => {
+                let tells = outcome.is_eventful() || self.offers(Action::GiveBack);
+                Some(outcome).filter(|_| tells)
+            }
+            _ => None,
+        }
+    }
+
+    /// None where the screen is too small.
+    pub fn layout(&self, area: Rect) -> Option<Layout> {
+        Layout::new(area, self.wish())
+    }
+
+    pub(super) fn wish(&self) -> Wish {
+        let simulated = if self.view.world.is_some() { Simulated::World } else { Simulated::Nothing };
+        let tree = self.program().map_or(0, |program| program.machines.len() + program.states.len());
+        Wish { focus: self.focus, figure: self.figure, extent: self.extent, simulated, tree }
+    }
+
+    /// The drawing of a machine for an area: kept from the last frame where nothing changed.
+    pub fn diagram(&self, program: &Program, machine: MachineId, area: Rect) -> Rc<Diagram> {
+        let key = (self.view.loads, machine, area.as_size());
+        let mut kept = self.diagram.borrow_mut();
+        match &*kept {
+            Some((of, diagram)) if *of == key => diagram.clone(),
+            _ => {
+                let diagram = Rc::new(Diagram::new(program, machine, area.width, area.height));
+                *kept = Some((key, diagram.clone()));
+                diagram
+            }
+        }
+    }
+}

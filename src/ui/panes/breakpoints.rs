@@ -1,0 +1,46 @@
+//! All breakpoints over the whole screen, to clear them.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+
+use super::sheet;
+use crate::runtime::record::Setter;
+use crate::ui::app::{App, top_for};
+use crate::ui::format;
+use crate::ui::pen::Pen;
+
+const NONE: &str = "No breakpoints. B sets one at the selected state; C asks for a condition. A transition: select it in the log \
+                    or in the detail of a state, then B. In the program's text: (break).";
+
+/// A breakpoint's mark, which tells who set it.
+pub fn mark(by: Setter) -> &'static str {
+    match by {
+        Setter::Command => "◆",
+        Setter::Source => "◇",
+    }
+}
+
+pub fn draw(app: &App, at: usize, area: Rect, buffer: &mut Buffer) {
+    let theme = app.theme();
+    let all = &app.view().breakpoints;
+    let top = top_for(0, Some(at), all.len(), usize::from(area.height.saturating_sub(1)));
+    let inside = sheet::title(app, "breakpoints", (top, all.len()), area, buffer);
+    if all.is_empty() {
+        let lines = format::wrap(NONE, inside.width.saturating_sub(2));
+        for (y, line) in (0..inside.height).zip(lines) {
+            Pen::new(buffer, inside, y).put(" ", theme.dim()).put(&line, theme.dim());
+        }
+    }
+    for (y, (index, breakpoint)) in (0..inside.height).zip(all.iter().enumerate().skip(top)) {
+        let mut pen = Pen::new(buffer, inside, y);
+        pen.put(if index == at { "▸" } else { " " }, theme.bold());
+        pen.put(mark(breakpoint.by), theme.breakpoint()).put(" ", theme.normal());
+        if breakpoint.by == Setter::Source && pen.room() > 50 {
+            pen.put_right(" ", theme.dim()).put_right("in the text", theme.dim()).put_right("  ", theme.dim());
+        }
+        pen.put(&breakpoint.at.to_string(), theme.normal());
+        if index == at {
+            pen.wash(theme.selected());
+        }
+    }
+}

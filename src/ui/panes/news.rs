@@ -1,0 +1,50 @@
+//! What the last save did, over the log for a moment: only where there is more to say than the status line holds.
+
+use ratatui::buffer::Buffer;
+use ratatui::layout::Rect;
+use ratatui::style::Style;
+
+use crate::ui::app::App;
+use crate::ui::format;
+use crate::ui::pen::Pen;
+use crate::ui::view::{Outcome, describe, name};
+
+/// More changes than these are counted.
+const TOLD: usize = 5;
+
+/// `place`: the log, or what there is instead of it. The log says the same in short, so it is what may be covered.
+pub fn draw(app: &App, place: Rect, buffer: &mut Buffer) {
+    let Some(outcome) = app.news() else { return };
+    let (theme, lines) = (app.theme(), lines(app, outcome, place.width.saturating_sub(2)));
+    let height = (lines.len() as u16 + 1).min(place.bottom().saturating_sub(1));
+    let y = place.y.min(place.bottom() - height);
+    let area = Rect { y, height, ..place };
+    let mut title = Pen::new(buffer, area, 0);
+    title.put("─ ", theme.rule()).put("saved", theme.fresh()).put(" ", theme.rule()).fill("─", theme.rule());
+    for (y, (text, style)) in (1..height).zip(&lines) {
+        Pen::new(buffer, area, y).put(" ", Style::reset()).put(text, *style).fill(" ", Style::reset());
+    }
+}
+
+fn lines(app: &App, outcome: &Outcome, room: u16) -> Vec<(String, Style)> {
+    let theme = app.theme();
+    let mut lines = Vec::new();
+    let mut add = |text: &str, style: Style| {
+        lines.extend(format::wrap(text, room).into_iter().map(|line| (line, style)));
+    };
+    outcome.effects().iter().for_each(|effect| add(effect, theme.bold()));
+    if !outcome.disturbs() {
+        add("nothing that runs is disturbed", theme.dim());
+    }
+    outcome.changes.iter().take(TOLD).for_each(|change| add(&describe(change), theme.normal()));
+    if let Some(more @ 1..) = outcome.changes.len().checked_sub(TOLD) {
+        add(&format!("and {more} more"), theme.dim());
+    }
+    let lost: Vec<String> = app.view().lost().map(|(var, value)| format!("{} {value}", name(var))).collect();
+    match lost.len() {
+        0 => (),
+        1 => add(&format!("tuned: {} - u gives it back", lost[0]), theme.fresh()),
+        _ => add(&format!("tuned: {} - u gives them back", lost.join(", ")), theme.fresh()),
+    }
+    lines
+}
