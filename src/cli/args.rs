@@ -7,7 +7,7 @@ use clap::{ArgAction, Parser, Subcommand, ValueEnum};
 
 use crate::lua::{Access, Limits};
 use crate::model::Robot;
-use crate::runtime::{Options, Time};
+use crate::runtime::{OnEdit, Options, Saves, Time};
 use crate::session::engine_thread::Pacing;
 use crate::session::live::Setup;
 use crate::session::pace::Rate;
@@ -23,18 +23,21 @@ pub struct Args {
     task: Option<Task>,
     #[command(flatten)]
     live: Option<RunArgs>,
+    #[command(flatten)]
+    saves: SavesArgs,
 }
 
 impl Args {
     pub fn task(self) -> Task {
-        self.task.or(self.live.map(Task::Live)).expect("clap asks for one of them")
+        let Args { task, live, saves } = self;
+        task.or(live.map(|run| Task::Live(LiveArgs { run, saves }))).expect("clap asks for one of them")
     }
 }
 
 #[derive(Subcommand)]
 pub enum Task {
     /// Open the screen on a program and run it (the same as `lrp FILE`)
-    Live(RunArgs),
+    Live(LiveArgs),
     /// Run a program without a screen
     Run(RunArgs),
     /// Report what is wrong with programs; exit code 1 if any has errors
@@ -73,6 +76,21 @@ pub enum Format {
 }
 
 #[derive(clap::Args)]
+pub struct LiveArgs {
+    #[command(flatten)]
+    pub run: RunArgs,
+    #[command(flatten)]
+    saves: SavesArgs,
+}
+
+#[derive(clap::Args)]
+struct SavesArgs {
+    /// Hold every save until a key applies or drops it
+    #[arg(long, action = ArgAction::SetTrue)]
+    hold: bool,
+}
+
+#[derive(clap::Args)]
 pub struct RunArgs {
     /// The program
     pub file: PathBuf,
@@ -94,9 +112,10 @@ pub struct RunArgs {
     /// For everything random: the simulator's noise and math.random
     #[arg(long, value_name = "N", default_value_t = 1)]
     pub seed: u64,
-    /// What an edit does to an active state that it changes: restart begins the program again
-    #[arg(long, value_name = "HOW", value_enum, default_value_t = OnEdit::Restart)]
-    pub on_edit: OnEdit,
+    /// What an edit does that changes an active state: restart begins the program again; keep swaps its actions in
+    /// place, and starts only a machine again whose active state is gone or spawns something else
+    #[arg(long, value_name = "HOW", value_enum, default_value_t = EditMode::Restart)]
+    pub on_edit: EditMode,
     /// How long a block may run before it is stopped, ms
     #[arg(long, value_name = "MS", default_value = "250", value_parser = clap::value_parser!(u64).range(1..=60_000))]
     pub block_limit: u64,
@@ -109,8 +128,9 @@ pub struct RunArgs {
 }
 
 #[derive(Clone, Copy, ValueEnum)]
-pub enum OnEdit {
+pub enum EditMode {
     Restart,
+    Keep,
 }
 
 #[derive(clap::Args)]
@@ -140,15 +160,27 @@ pub enum GraphFormat {
     Mermaid,
 }
 
+impl LiveArgs {
+    pub fn setup(&self) -> Setup {
+        let setup = self.run.setup();
+        let saves = if self.saves.hold { Saves::Hold } else { Saves::Apply };
+        Setup { options: Options { saves, ..setup.options }, ..setup }
+    }
+}
+
 impl RunArgs {
     pub fn setup(&self) -> Setup {
         let limits =
             Limits { time: Duration::from_millis(self.block_limit), memory: (self.memory_limit << 20) as usize };
         let access = if self.allow_system { Access::System } else { Access::Sandboxed };
         let clock = if self.virtual_time { Clock::Virtual } else { Clock::Real };
+        let on_edit = match self.on_edit {
+            EditMode::Restart => OnEdit::Restart,
+            EditMode::Keep => OnEdit::Keep,
+        };
         Setup {
             file: self.file.clone(),
-            options: Options { limits, access, seed: self.seed, ..Options::default() },
+            options: Options { limits, access, seed: self.seed, on_edit, ..Options::default() },
             pacing: Pacing { rate: self.rate, clock, until: self.until.map(|time| Time(time.as_micros() as u64)) },
             robots: self.bridge.clone(),
         }

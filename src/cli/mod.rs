@@ -8,7 +8,7 @@ mod output;
 
 use std::process::ExitCode;
 
-use clap::error::ErrorKind;
+use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{CommandFactory, Parser};
 
 use crate::syntax::nearest::nearest;
@@ -20,7 +20,7 @@ pub fn main() -> ExitCode {
         Err(error) => return wrong(&error),
     };
     match args.task() {
-        Task::Live(run) => crate::ui::live::run(run.setup(), run.trace),
+        Task::Live(live) => crate::ui::live::run(live.setup(), live.run.trace),
         Task::Run(run) => crate::session::headless::run(run.setup(), run.trace),
         Task::Check { files, format } => check::check(&files, format),
         Task::Graph(graph) => graph::print(&graph),
@@ -38,10 +38,17 @@ fn wrong(error: &clap::Error) -> ExitCode {
         Some(near) if error.kind() == ErrorKind::ArgumentConflict => {
             output::complain(format_args!("there is no command `{first}`; did you mean `{near}`?"));
         }
+        _ if error.kind() == ErrorKind::UnknownArgument && first == "run" && is_about(error, "--hold") => {
+            output::complain("`lrp run` can't hold saves: it has no key to apply or drop them; `lrp --hold FILE` has");
+        }
         _ => {
             // Where nobody listens there is nothing to say.
             let _ = error.print();
         }
     }
     ExitCode::from(error.exit_code() as u8)
+}
+
+fn is_about(error: &clap::Error, argument: &str) -> bool {
+    matches!(error.get(ContextKind::InvalidArg), Some(ContextValue::String(wrong)) if wrong == argument)
 }

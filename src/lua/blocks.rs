@@ -1,5 +1,7 @@
 //! Blocks: compiled, placed, freed. Knows nothing of calling them.
 
+use std::sync::Arc;
+
 use super::bytecode::{self, Kind};
 use super::desk::Chunk;
 use super::{Block, Cell, Lua, Slot, SyntaxError, source};
@@ -52,8 +54,11 @@ impl Lua {
                 let message = format!("more than {} variables in one block: move some into a table", source::NAMES);
                 return Err(SyntaxError { message, line: found.line, token: Some(name.to_owned()) });
             }
-            if let Slot::Variable { name: known, .. } = &mut self.slots[cell.0 as usize] {
-                known.get_or_insert_with(|| name.into());
+            // The newest, as a variable can be renamed.
+            if let Slot::Variable { name: known, .. } = &mut self.slots[cell.0 as usize]
+                && known.as_deref() != Some(name)
+            {
+                *known = Some(name.into());
             }
         }
         Ok(bound)
@@ -89,11 +94,11 @@ impl Lua {
     }
 
     /// Where a block is: its first line is line `first_line` (from 1) of `file`. To be called again when an edit moved it.
-    pub fn set_place(&mut self, block: Block, file: &str, first_line: u32) {
+    pub fn set_place(&mut self, block: Block, file: &Arc<str>, first_line: u32) {
         if let Some(chunk) = self.chunk(block)
             && let Some(chunk) = self.desk.chunks.borrow_mut().get_mut(&chunk)
         {
-            chunk.place = Some((file.into(), first_line));
+            chunk.place = Some((Arc::clone(file), first_line));
         }
     }
 

@@ -22,7 +22,7 @@ pub(super) struct Spot {
 /// What is known of a compiled text. It outlives the block, as functions made by it may.
 pub(super) struct Chunk {
     pub block: Option<Block>,
-    pub place: Option<(Box<str>, u32)>,
+    pub place: Option<(Arc<str>, u32)>,
     pub scope: Box<[Box<str>]>,
 }
 

@@ -44,10 +44,10 @@ pub fn same_actions(old: &Program, a: StateId, new: &Program, b: StateId, matchi
         && was.onentry.iter().zip(&now.onentry).all(same_entry)
 }
 
-/// Whether entering a state spawns the same machines in the same order in both programs.
+/// Whether entering a state spawns the same machines in the same states, in the same order.
 pub fn same_spawns(old: &Program, a: StateId, new: &Program, b: StateId, matching: &Matching) -> bool {
     let (was, now): (Vec<_>, Vec<_>) = (old[a].spawns().collect(), new[b].spawns().collect());
-    was.len() == now.len() && was.iter().zip(&now).all(|(was, now)| same_spawn(old, was, new, now, matching))
+    was.len() == now.len() && was.iter().zip(&now).all(|((_, was), (_, now))| same_spawn(old, was, new, now, matching))
 }
 
 /// Whether a block does the same in both programs.
@@ -55,9 +55,14 @@ pub fn same_block(old: &Program, a: BlockId, new: &Program, b: BlockId, matching
     old[a].code == new[b].code || keys(Side::Old(old, new), matching, a) == keys(Side::New(new), matching, b)
 }
 
-fn same_spawn(old: &Program, was: &Spawn, new: &Program, now: &Spawn, matching: &Matching) -> bool {
-    let same_text = was.machine_name == now.machine_name && was.state_name == now.state_name;
-    same_text || spawn_keys(Side::Old(old, new), matching, was) == spawn_keys(Side::New(new), matching, now)
+/// Whether two spawns are of the same machine in the same state; one that names something unknown says the same.
+pub fn same_spawn(old: &Program, was: &Spawn, new: &Program, now: &Spawn, matching: &Matching) -> bool {
+    match (was.target, now.target) {
+        (Some((machine, state)), Some((now_machine, now_state))) => {
+            matching.machine(machine) == Some(now_machine) && matching.state(state) == Some(now_state)
+        }
+        _ => spawn_keys(Side::Old(old, new), matching, was) == spawn_keys(Side::New(new), matching, now),
+    }
 }
 
 fn spawn_keys<'p>(side: Side<'p>, matching: &Matching, spawn: &'p Spawn) -> Vec<Key<'p>> {

@@ -13,6 +13,7 @@ mod link;
 pub mod matching;
 pub mod names;
 pub mod program;
+pub mod renamed;
 pub mod resolve;
 mod words;
 

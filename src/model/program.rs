@@ -240,16 +240,39 @@ impl Program {
         }
     }
 
+    /// The actions on pause and resume.
+    pub fn hooks(&self) -> Vec<BlockId> {
+        self.on_pause.into_iter().chain(self.on_resume).collect()
+    }
+
+    /// The blocks written in the transitions of a machine.
+    pub fn guards(&self, machine: MachineId) -> Vec<BlockId> {
+        let block = |&id: &TransitionId| match self[id].trigger {
+            Trigger::Block(block) | Trigger::AfterBlock(block) => Some(block),
+            _ => None,
+        };
+        self[machine].transitions.iter().filter_map(block).collect()
+    }
+
     pub fn state_named(&self, machine: MachineId, name: &str) -> Option<StateId> {
         self[machine].states.iter().copied().find(|&state| &*self[state].name == name)
     }
 }
 
 impl State {
-    /// What is spawned when it is entered, in the order written.
-    pub fn spawns(&self) -> impl Iterator<Item = &Spawn> {
-        self.onentry.iter().filter_map(|entry| match entry {
-            Entry::Spawn(spawn) => Some(spawn),
+    /// All its actions.
+    pub fn blocks(&self) -> Vec<BlockId> {
+        let onentry = self.onentry.iter().filter_map(|item| match item {
+            Entry::Action(block) => Some(*block),
+            Entry::Spawn(_) => None,
+        });
+        onentry.chain(self.running.iter().copied()).chain(self.onexit.iter().copied()).collect()
+    }
+
+    /// What its onentry spawns, each with its place among the onentry items.
+    pub fn spawns(&self) -> impl Iterator<Item = (u32, &Spawn)> {
+        (0..).zip(&self.onentry).filter_map(|(index, item)| match item {
+            Entry::Spawn(spawn) => Some((index, spawn)),
             Entry::Action(_) => None,
         })
     }

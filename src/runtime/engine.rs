@@ -8,8 +8,9 @@ use serde_json::Value;
 use super::command::{OnEdit, OnError, Saves};
 use super::faults::Faults;
 use super::note::Note;
+use super::patch::Pending;
 use super::plan::Plan;
-use super::record::{Change, Load, Record, What};
+use super::record::{Record, What};
 use super::robot::Robots;
 use super::store::Store;
 use super::time::Time;
@@ -65,8 +66,8 @@ pub struct Engine {
     pub(super) on_edit: OnEdit,
     pub(super) saves: Saves,
     pub(super) on_error: OnError,
-    /// Not taken over yet.
-    pub(super) held: Option<Edit>,
+    /// An edit that is not taken over yet.
+    pub(super) held: Option<Pending>,
     pub(super) notes: Vec<Note>,
     pub(super) faults: Faults,
     pub(super) changes: super::changes::Changes,
@@ -76,9 +77,17 @@ pub struct Engine {
 pub(super) struct Running {
     pub state: StateId,
     pub entered: Time,
+    /// The name of the state that it was started in.
+    pub start: Arc<str>,
     pub nested: Vec<MachineId>,
     /// Found to hold right after entry: taken in the next step, unless an edit comes between.
     pub decided: Option<super::machine::Fired>,
+}
+
+impl Running {
+    pub fn new(state: StateId, entered: Time, start: Arc<str>) -> Running {
+        Running { state, entered, start, nested: Vec::new(), decided: None }
+    }
 }
 
 impl Engine {
@@ -155,6 +164,9 @@ impl Engine {
         if self.faults.any_unreported() {
             self.report_faults();
         }
+        if self.held.is_some() {
+            self.tell_held_again();
+        }
     }
 
     fn report_outputs(&mut self) {
@@ -194,19 +206,5 @@ impl Engine {
     /// Forgets what happened since the last `drain`: for those who only want the machines to run.
     pub fn discard_records(&mut self) {
         self.notes.clear();
-    }
-
-    pub(super) fn load_record(&self, changes: Vec<Change>, reason: Option<String>) -> Load {
-        let program = &self.program;
-        Load {
-            changes,
-            restarted: reason.is_some(),
-            reason,
-            again: Vec::new(),
-            discarded: Vec::new(),
-            findings: super::findings::findings(program, |finding| !finding.is_error()),
-            files: super::findings::files(program),
-            program: Some(Arc::clone(program)),
-        }
     }
 }

@@ -34,7 +34,19 @@ pub struct Happening {
     pub state: Arc<str>,
 }
 
+/// Where a fault of the old program stands in the new one.
+pub struct Moved {
+    pub span: Span,
+    pub source: Source,
+    /// The state or machine it belongs to.
+    pub state: Arc<str>,
+}
+
 impl Faults {
+    pub fn is_empty(&self) -> bool {
+        self.known.is_empty()
+    }
+
     /// The fault as a record, when it is to go out now.
     pub fn happened(&mut self, now: Time, source: &Source, what: Happening) -> Option<Fault> {
         let key = (what.code, what.span);
@@ -89,13 +101,14 @@ impl Faults {
     }
 
     /// After an edit: keeps those for whose place `moved` has a new one, and gives them out anew.
-    pub fn edited(&mut self, now: Time, moved: impl Fn(Code, Span) -> Option<(Span, Source)>) -> Vec<Fault> {
+    pub fn edited(&mut self, now: Time, moved: impl Fn(Code, Span) -> Option<Moved>) -> Vec<Fault> {
         let mut kept = Vec::new();
         for mut entry in std::mem::take(&mut self.known) {
-            if let Some((span, source)) = moved(entry.code, entry.span) {
+            if let Some(Moved { span, source, state }) = moved(entry.code, entry.span) {
                 let place = source.position(span.start as usize);
                 entry.span = span;
                 (entry.fault.line, entry.fault.column) = (place.line, place.column);
+                (entry.fault.file, entry.fault.state) = (source.name, state);
                 (entry.reported, entry.reported_at) = (entry.fault.count, now);
                 kept.push(entry);
             }

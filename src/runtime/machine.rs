@@ -10,9 +10,9 @@ use crate::syntax::Code;
 /// A transition whose guard holds; `via` is the nested state an exit transition is written at.
 #[derive(Clone, Copy)]
 pub(super) struct Fired {
-    transition: TransitionId,
-    target: StateId,
-    via: Option<StateId>,
+    pub transition: TransitionId,
+    pub target: StateId,
+    pub via: Option<StateId>,
 }
 
 /// What spawns a machine: a spawn statement at top level, or one of a state's onentry items.
@@ -215,12 +215,17 @@ impl Engine {
 
     /// Makes a machine run, its variables initialised, before any state is entered.
     pub(super) fn start(&mut self, machine: MachineId, state: StateId, by: Option<StateId>) {
-        self.running[machine.index()] = Some(Running { state, entered: self.now, nested: Vec::new(), decided: None });
+        let start = self.program[state].name.clone();
+        self.running[machine.index()] = Some(Running::new(state, self.now, start));
         let parent = by.and_then(|state| self.running[self.program[state].machine.index()].as_mut());
         match parent {
             Some(parent) => parent.nested.push(machine),
             None => self.tops.push(machine),
         }
+        self.begin_run(machine, by);
+    }
+
+    pub(super) fn begin_run(&mut self, machine: MachineId, by: Option<StateId>) {
         self.note(Note::Spawn { machine, by });
         for index in 0..self.program[machine].vars.len() {
             self.initialise_anew(self.program[machine].vars[index]);

@@ -16,6 +16,7 @@ mod picture;
 mod plan;
 mod reach;
 pub mod record;
+mod reuse;
 mod robot;
 mod store;
 pub mod time;

@@ -3,6 +3,7 @@
 
 use std::sync::Arc;
 
+use super::command::Command;
 use super::record::{Taken, What};
 use crate::model::*;
 
@@ -24,6 +25,17 @@ pub enum Note {
 }
 
 impl Note {
+    /// Whether after this an edit may do something else than before.
+    pub fn may_change_a_verdict(&self) -> bool {
+        match self {
+            Note::Spawn { .. } | Note::Enter(_) | Note::Discard(_) => true,
+            Note::Exit(_) | Note::Transition { .. } => false,
+            Note::Rare(what) => {
+                matches!(**what, What::Restart { .. } | What::Command { command: Command::OnEdit { .. } })
+            }
+        }
+    }
+
     pub fn spell_out(self, program: &Program) -> What {
         match self {
             Note::Spawn { machine, by } => {

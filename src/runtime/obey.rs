@@ -3,13 +3,13 @@
 use std::rc::Rc;
 use std::sync::Arc;
 
-use super::command::{Command, Saves};
+use super::command::Command;
 use super::engine::Engine;
 use super::machine::Spawner;
-use super::record::{Forced, Held, Level, Log, What};
+use super::record::{Forced, Level, Log, What};
 use crate::lua::{Cell, Ran};
 use crate::model::names::Names;
-use crate::model::{Edit, StateId, VarId};
+use crate::model::{StateId, VarId};
 use crate::syntax::nearest::nearest;
 
 /// Why a command had no effect, as a sentence.
@@ -44,14 +44,10 @@ impl Engine {
 
     fn obey(&mut self, command: Command) -> Result<(), Refused> {
         match command {
-            Command::Load(edit) if self.saves == Saves::Hold && !self.program.sources.is_empty() => self.hold(edit),
+            Command::Load(edit) if self.holds_saves() => self.hold(edit),
             Command::Load(edit) => self.load(edit),
-            Command::ApplyHeld => {
-                if let Some(edit) = self.held.take() {
-                    self.load(edit);
-                }
-            }
-            Command::DropHeld => self.held = None,
+            Command::ApplyHeld => self.apply_held()?,
+            Command::DropHeld => self.drop_held()?,
             Command::OnEdit { mode } => self.on_edit = mode,
             Command::Saves { mode } => self.saves = mode,
             Command::OnError { mode } => self.on_error = mode,
@@ -70,14 +66,6 @@ impl Engine {
             | Command::FileChanged { .. } => {}
         }
         Ok(())
-    }
-
-    fn hold(&mut self, edit: Edit) {
-        let changes = edit.comparison(&self.program).changes.clone();
-        let findings = super::findings::findings(&edit.program, |_| true);
-        let held = Held { changes, restarts: None, again: Vec::new(), discarded: Vec::new(), findings };
-        self.rare(What::Held(held));
-        self.held = Some(edit);
     }
 
     fn pause(&mut self, reason: &str) {

@@ -1,11 +1,11 @@
 //! The Lua side of a program: its variables as cells and its blocks as compiled functions. Both outlive an edit that
 //! doesn't concern them.
 
-use std::collections::{HashMap, VecDeque};
 use std::ops::Range;
-use std::sync::Arc;
 
+use super::reuse::{self, Key};
 use crate::lua::{self, Cell, Lua, SyntaxError};
+use crate::model::renamed::code_now;
 use crate::model::{Block, BlockId, MachineId, Matching, Program, VarId};
 
 pub struct Store {
@@ -16,9 +16,6 @@ pub struct Store {
     /// Blocks that are not run again until something about them changes.
     stopped: usize,
 }
-
-/// What makes two blocks the same function: their text and the cells of the variables they use.
-type Key = (Arc<str>, Box<[Cell]>);
 
 #[derive(Clone, Copy, Default)]
 pub struct Compiled {
@@ -91,7 +88,19 @@ impl Store {
     /// variables keep their functions.
     pub fn take_over(&mut self, old: &Program, new: &Program, matching: &Matching) -> Vec<Uncompiled> {
         self.take_over_cells(old, new, matching);
-        self.take_over_blocks(new)
+        let stopped = self.stopped_and_renamed(old, new, matching);
+        self.take_over_blocks(new, &stopped)
+    }
+
+    /// Blocks that are not run again, as they read with renamed variables.
+    fn stopped_and_renamed(&self, old: &Program, new: &Program, matching: &Matching) -> Vec<Key> {
+        if !self.any_stopped() {
+            return Vec::new();
+        }
+        let stopped = (0..self.blocks.len()).filter(|&index| self.blocks[index].stopped);
+        let codes = stopped.map(|index| (index, code_now(old, BlockId(index as u32), new, matching)));
+        let renamed = codes.filter(|(index, code)| old.blocks[*index].code != *code);
+        renamed.map(|(index, code)| self.keys[index].reading(code)).collect()
     }
 
     fn take_over_cells(&mut self, old: &Program, new: &Program, matching: &Matching) {
@@ -105,22 +114,23 @@ impl Store {
         self.cells = kept.into_iter().map(|cell| cell.unwrap_or_else(|| self.lua.cell())).collect();
     }
 
-    fn take_over_blocks(&mut self, new: &Program) -> Vec<Uncompiled> {
-        let mut kept: HashMap<Key, VecDeque<Compiled>> = HashMap::new();
-        for (key, compiled) in self.keys.drain(..).zip(self.blocks.drain(..)) {
-            kept.entry(key).or_default().push_back(compiled);
-        }
+    fn take_over_blocks(&mut self, new: &Program, renamed: &[Key]) -> Vec<Uncompiled> {
+        let pairs = reuse::pairs(&self.keys, &new.blocks, &self.cells);
+        let mut keys: Vec<Option<Key>> = self.keys.drain(..).map(Some).collect();
+        let old: Vec<Compiled> = std::mem::take(&mut self.blocks);
         self.stopped = 0;
         let mut uncompiled = Vec::new();
-        for (index, block) in new.blocks.iter().enumerate() {
-            let key = (block.code.clone(), block.uses.iter().map(|&var| self.cell(var)).collect());
-            let mut compiled = match kept.get_mut(&key).and_then(VecDeque::pop_front) {
-                Some(compiled) => compiled,
-                None => self.compile(new, block).unwrap_or_else(|error| {
+        for ((index, block), pair) in new.blocks.iter().enumerate().zip(pairs) {
+            let kept = pair.and_then(|pair| Some((keys[pair].take()?, old[pair])));
+            let (key, mut compiled) = kept.unwrap_or_else(|| {
+                let key = Key::of(block, &self.cells);
+                let mut compiled = self.compile(new, block).unwrap_or_else(|error| {
                     uncompiled.push(Uncompiled { block: BlockId(index as u32), error });
                     Compiled::default()
-                }),
-            };
+                });
+                compiled.stopped = renamed.iter().any(|stopped| stopped.is_renamed(&key));
+                (key, compiled)
+            });
             compiled.machine = block.machine;
             compiled.uses_variables = !block.uses.is_empty();
             if let Some(function) = compiled.lua {
@@ -131,9 +141,8 @@ impl Store {
             self.blocks.push(compiled);
             self.keys.push(key);
         }
-        for function in kept.into_values().flatten().filter_map(|compiled| compiled.lua) {
-            self.lua.free_block(function);
-        }
+        let gone = keys.iter().zip(&old).filter(|(key, _)| key.is_some());
+        gone.filter_map(|(_, compiled)| compiled.lua).for_each(|function| self.lua.free_block(function));
         uncompiled
     }
 

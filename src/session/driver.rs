@@ -85,11 +85,16 @@ impl Driver {
     pub fn command(&mut self, command: Command, sink: Sink) -> Result<(), Refused> {
         let held = matches!(
             command,
-            Command::Load(_) | Command::Restart | Command::TransitionTo { .. } | Command::JumpTo { .. }
+            Command::Load(_)
+                | Command::ApplyHeld
+                | Command::Restart
+                | Command::TransitionTo { .. }
+                | Command::JumpTo { .. }
         );
         let delivery = if held && self.engine.is_paused() { Delivery::Held } else { Delivery::Now };
         let result = match command {
-            Command::Load(edit) => self.load(edit),
+            Command::Load(edit) if !self.engine.holds_saves() => self.load(edit),
+            Command::ApplyHeld => self.apply_held(),
             Command::PutAtStart { ref bridge } => {
                 self.put_at_start(bridge);
                 self.engine.command(command)
@@ -157,6 +162,21 @@ impl Driver {
 
     fn load(&mut self, mut edit: Edit) -> Result<(), Refused> {
         let states = self.connect(&mut edit.program);
+        self.take_over(Command::Load(edit), states)
+    }
+
+    /// The robots of an edit are not touched before it is taken over.
+    fn apply_held(&mut self) -> Result<(), Refused> {
+        let Some(mut program) = self.engine.held_program().cloned() else {
+            return self.engine.command(Command::ApplyHeld);
+        };
+        let states = self.connect(&mut program);
+        self.engine.amend_held(program);
+        self.take_over(Command::ApplyHeld, states)
+    }
+
+    /// A program whose robots are connected.
+    fn take_over(&mut self, command: Command, states: Vec<BridgeState>) -> Result<(), Refused> {
         for robot in &self.robots {
             let (description, stale) = match &robot.bridge {
                 Some(bridge) => (bridge.description(), bridge.stale()),
@@ -164,7 +184,7 @@ impl Driver {
             };
             self.engine.describe(&robot.form.name, &description, stale);
         }
-        let result = self.engine.command(Command::Load(edit));
+        let result = self.engine.command(command);
         for state in states {
             self.engine.say(What::Bridge(state));
         }

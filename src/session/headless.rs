@@ -140,6 +140,8 @@ impl Outcome {
         if let (true, Some(reason)) = (self.loaded, &load.reason) {
             say(&format!("restarted: {reason}"));
         }
+        load.again.iter().for_each(|machine| say(&format!("started again: {machine}")));
+        load.discarded.iter().for_each(|machine| say(&format!("runs no longer: {machine}")));
         load.findings.iter().filter(|finding| finding.severity == "warning").for_each(tell);
         self.loaded = true;
     }

@@ -49,6 +49,8 @@ fn wrong_usage_is_2_with_the_likely_fix() {
         (&["run", "--for", "-5s", "x.lrp"], "such as 500ms, 5s or 2m"),
         (&["run", "--bridge", "sim", "x.lrp"], "write NAME=KIND, such as robot=sim"),
         (&["run", "--virtul", "x.lrp"], "--virtual"),
+        (&["run", "--on-edit", "kep", "x.lrp"], "keep"),
+        (&["run", "--hold", "x.lrp"], "`lrp run` can't hold saves: it has no key to apply or drop them"),
         (&["check"], "<FILE>"),
         (&["graph", "--format", "png", "x.lrp"], "dot"),
     ] {

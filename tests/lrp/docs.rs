@@ -2,7 +2,8 @@
 //! how examples are marked, and nothing of what they are about.
 //!
 //! A fence ```` ```lrp ```` is a program without mistakes; ```` ```lrp broken ```` must be reported; ```` ```lrp faulty ````
-//! must go wrong while it runs. A fence ```` ```trace ```` after it tells lines of its run, in order, others left out;
+//! must go wrong while it runs. A fence ```` ```trace ```` after it tells lines of its run, in order, others left out, and what
+//! is done to it: `300 input ..`, `300 command ..`, `300 save OLD => NEW`;
 //! ```` ```json ```` in docs/trace.md is a record a line.
 
 mod page;

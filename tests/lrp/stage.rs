@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use lrp::lua::Limits;
 use lrp::model::Edit;
-use lrp::runtime::{Command, Engine, Input, Options, Record, Time};
+use lrp::runtime::{Command, Engine, Input, OnEdit, Options, Record, Saves, Time};
 use lrp::session::compile::{Compiler, Rejected};
 use lrp::session::driver::Driver;
 use lrp::session::findings;
@@ -124,6 +124,7 @@ pub struct Head {
     length: f64,
     rate: f64,
     seed: u64,
+    on_edit: OnEdit,
     limit: Duration,
     modules: Vec<(String, String)>,
     /// In the order written.
@@ -136,6 +137,7 @@ impl Head {
             length: 1000.0,
             rate: 10.0,
             seed: 1,
+            on_edit: OnEdit::Restart,
             limit: Duration::from_millis(250),
             modules: Vec::new(),
             events: Vec::new(),
@@ -146,6 +148,7 @@ impl Head {
                 "for" => head.length = number(rest),
                 "rate" => head.rate = number(rest),
                 "seed" => head.seed = number(rest) as u64,
+                "on-edit" => head.on_edit = on_edit(rest),
                 "limit" => head.limit = Duration::from_secs_f64(number(rest) / 1000.0),
                 "module" => {
                     let (name, text) = split(rest);
@@ -168,6 +171,9 @@ impl Head {
         let saves = saves.into_iter().map(|(t, text)| (t, Event::Save(text)));
         let mut events: Vec<(f64, Event)> = self.events.into_iter().chain(saves).collect();
         events.sort_by(|a, b| a.0.total_cmp(&b.0));
+        if self.on_edit != OnEdit::Restart {
+            stage.command(Command::OnEdit { mode: self.on_edit });
+        }
         stage.event(Event::Save(text.into()));
         let mut events = events.into_iter().peekable();
         let mut real = 0.0;
@@ -195,6 +201,14 @@ fn number(text: &str) -> f64 {
     unit * text.parse::<f64>().unwrap_or_else(|_| panic!("`{text}` is not a number"))
 }
 
+fn on_edit(text: &str) -> OnEdit {
+    match text {
+        "restart" => OnEdit::Restart,
+        "keep" => OnEdit::Keep,
+        _ => panic!("`{text}` is no way to edit"),
+    }
+}
+
 pub fn read_event(text: &str) -> Event {
     let (what, rest) = split(text);
     Event::Command(match what {
@@ -204,6 +218,10 @@ pub fn read_event(text: &str) -> Event {
         "restart" => Command::Restart,
         "runstop" => Command::Runstop,
         "rate" => Command::Rate { hz: number(rest) },
+        "on-edit" => Command::OnEdit { mode: on_edit(rest) },
+        "saves" => Command::Saves { mode: if rest == "hold" { Saves::Hold } else { Saves::Apply } },
+        "apply-held" => Command::ApplyHeld,
+        "drop-held" => Command::DropHeld,
         "transition-to" => Command::TransitionTo { state: rest.into() },
         "jump-to" => Command::JumpTo { state: rest.into() },
         "set" => {

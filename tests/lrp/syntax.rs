@@ -2,6 +2,7 @@
 
 mod corpus;
 mod dump;
+mod free_names;
 mod lua;
 mod properties;
 mod rendering;

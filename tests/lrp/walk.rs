@@ -5,8 +5,9 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Duration;
 
-use lrp::runtime::record::{Element, Load, Op};
-use lrp::runtime::{Command, Engine, Input, Record, Time, What};
+use lrp::model::Program;
+use lrp::runtime::record::{Element, Held, Load, Op};
+use lrp::runtime::{Command, Engine, Input, OnEdit, Record, Saves, Time, What};
 use lrp::session::compile::Compiler;
 use lrp::syntax::Source;
 use lrp::ui::view::View;
@@ -18,6 +19,7 @@ use crate::plot::{Choices, Plot};
 use crate::stage::{Event, Stage, lines};
 
 /// What an edit that doesn't concern them leaves alone.
+#[derive(PartialEq)]
 struct Kept {
     /// Active states, and when they were entered.
     active: BTreeMap<String, Option<Time>>,
@@ -35,21 +37,28 @@ impl Kept {
     }
 
     /// After an edit, with what it said.
-    fn check(&self, after: &Kept, load: &Load, set: &[&str]) -> Result<(), String> {
-        if load.restarted {
-            let concerns = |state: &str| {
-                load.changes.iter().any(|change| match (change.op, change.kind) {
-                    (Op::Removed, Element::Machine) => owner(state) == Some(&*change.path),
-                    (Op::Removed | Op::Changed, Element::State) => *change.path == *state,
-                    _ => false,
-                })
-            };
-            return match self.active.keys().any(|state| concerns(state)) {
-                true => Ok(()),
-                false => Err(format!("restarted for no reason: {load:?}")),
-            };
+    fn check(&self, after: &Kept, load: &Load, mode: OnEdit, set: &[&str]) -> Result<(), String> {
+        let ended: Vec<&str> = load.again.iter().chain(&load.discarded).map(|path| &**path).collect();
+        match mode {
+            OnEdit::Restart if !ended.is_empty() => return Err(format!("{ended:?} started again: {load:?}")),
+            OnEdit::Restart if load.restarted && !self.active.keys().any(|state| concerns(load, state)) => {
+                return Err(format!("restarted for no reason: {load:?}"));
+            }
+            OnEdit::Restart if load.restarted => return Ok(()),
+            OnEdit::Restart => {}
+            OnEdit::Keep if load.restarted => return Err("restarted, though it keeps".into()),
+            OnEdit::Keep => {
+                let for_no_reason = |machine: &&&str| {
+                    let states = self.active.keys();
+                    !states.filter(|state| owner(state) == Some(machine)).any(|state| concerns(load, state))
+                };
+                if let Some(machine) = ended.iter().find(for_no_reason) {
+                    return Err(format!("{machine} ended for no reason: {load:?}"));
+                }
+            }
         }
-        for (state, entered) in &self.active {
+        let undisturbed = |path: &str| !ended.iter().any(|machine| is_inside(path, machine));
+        for (state, entered) in self.active.iter().filter(|(state, _)| undisturbed(state)) {
             if after.active.get(state) != Some(entered) {
                 return Err(format!("{state} is disturbed"));
             }
@@ -63,45 +72,101 @@ impl Kept {
     }
 }
 
+/// Whether an edit has anything to do with an active state.
+fn concerns(load: &Load, state: &str) -> bool {
+    load.changes.iter().any(|change| match (change.op, change.kind) {
+        (Op::Removed, Element::Machine) => owner(state) == Some(&*change.path),
+        (Op::Removed | Op::Changed, Element::State) => *change.path == *state,
+        _ => false,
+    })
+}
+
+fn is_inside(path: &str, machine: &str) -> bool {
+    path.strip_prefix(machine).is_some_and(|rest| rest.starts_with('/'))
+}
+
+struct Walk {
+    stage: Stage,
+    mode: OnEdit,
+    /// What taking the held save over would do, as last told.
+    held: Option<Held>,
+}
+
 fn walk(numbers: &[u32]) -> Result<(), String> {
     let choices = &mut Choices::new(numbers);
     let mut plot = Plot::draw(choices);
-    let mut stage = Stage::new(1, Duration::from_secs(5), Vec::new());
-    stage.event(Event::Save(plot.text()));
+    let mut walk = Walk { stage: Stage::new(1, Duration::from_secs(5), Vec::new()), mode: OnEdit::Restart, held: None };
+    walk.stage.event(Event::Save(plot.text()));
     while !choices.is_empty() {
         match choices.below(3) {
-            0 => (0..1 + choices.below(4)).for_each(|_| stage.tick()),
+            0 => walk.tick(1 + choices.below(4))?,
             1 => {
                 plot.change(choices);
-                edit(&mut stage, plot.text())?;
+                walk.happens(Event::Save(plot.text()))?;
             }
-            _ => {
-                let event = event(choices, stage.engine());
-                stage.event(event);
-            }
+            _ => walk.happens(event(choices, walk.stage.engine()))?,
         }
     }
-    reads_back(&stage.records, &stage.view)
+    reads_back(&walk.stage.records, &walk.stage.view)
 }
 
-fn edit(stage: &mut Stage, text: String) -> Result<(), String> {
-    let before = Kept::of(stage.engine());
-    let known = stage.records.len();
-    stage.event(Event::Save(text.clone()));
-    let after = Kept::of(stage.engine());
-    let fresh = &stage.records[known..];
-    let load = fresh.iter().find_map(|record| match &record.what {
-        What::Load(load) => Some(load),
-        _ => None,
-    });
-    let load = load.ok_or_else(|| format!("refused:\n{}\n{text}", lines(fresh)))?;
-    let set = fresh.iter().filter_map(|record| match &record.what {
-        What::Set { var, .. } => Some(&**var),
-        _ => None,
-    });
-    before
-        .check(&after, load, &set.collect::<Vec<_>>())
-        .map_err(|wrong| format!("{wrong} by\n{}\n{text}", lines(fresh)))
+impl Walk {
+    fn tick(&mut self, times: usize) -> Result<(), String> {
+        let known = self.stage.records.len();
+        (0..times).for_each(|_| self.stage.tick());
+        self.follow_held(known)
+    }
+
+    fn happens(&mut self, event: Event) -> Result<(), String> {
+        let before = Kept::of(self.stage.engine());
+        let known = self.stage.records.len();
+        self.stage.event(event.clone());
+        let after = Kept::of(self.stage.engine());
+        let fresh = &self.stage.records[known..];
+        let wrong = |wrong: String| format!("{wrong} by {event:?}\n{}", lines(fresh));
+        let load = fresh.iter().find_map(|record| match &record.what {
+            What::Load(load) => Some(load),
+            _ => None,
+        });
+        if let Some(load) = load {
+            let set = fresh.iter().filter_map(|record| match &record.what {
+                What::Set { var, .. } => Some(&**var),
+                _ => None,
+            });
+            before.check(&after, load, self.mode, &set.collect::<Vec<_>>()).map_err(wrong)?;
+        } else if let Event::Save(_) = event
+            && (before != after || self.stage.engine().held().is_none())
+        {
+            return Err(wrong("neither taken over nor held".into()));
+        }
+        match (&event, load, &self.held) {
+            (Event::Command(Command::ApplyHeld), Some(load), Some(held)) => {
+                let would = (&held.restarts, &held.again, &held.discarded, &held.changes);
+                if would != (&load.reason, &load.again, &load.discarded, &load.changes) {
+                    return Err(wrong(format!("otherwise than was told: {held:?}")));
+                }
+            }
+            (Event::Command(Command::ApplyHeld), _, Some(_)) => return Err(wrong("not applied".into())),
+            (Event::Command(Command::OnEdit { mode }), ..) => self.mode = *mode,
+            _ => {}
+        }
+        self.follow_held(known)
+    }
+
+    /// The records say what is held.
+    fn follow_held(&mut self, known: usize) -> Result<(), String> {
+        for record in &self.stage.records[known..] {
+            match &record.what {
+                What::Held(held) => self.held = Some(held.clone()),
+                What::Load(_) | What::Command { command: Command::DropHeld } => self.held = None,
+                _ => {}
+            }
+        }
+        match self.stage.engine().held() == self.held.as_ref() {
+            true => Ok(()),
+            false => Err(format!("held is {:?}, told was {:?}", self.stage.engine().held(), self.held)),
+        }
+    }
 }
 
 fn event(choices: &mut Choices, engine: &Engine) -> Event {
@@ -109,7 +174,7 @@ fn event(choices: &mut Choices, engine: &Engine) -> Event {
     let vars = &engine.program().vars;
     let state = choices.of(states).map(|state| state.path.to_string()).unwrap_or_default();
     let var = choices.of(vars).map(|var| var.path.to_string()).unwrap_or_default();
-    Event::Command(match choices.below(10) {
+    Event::Command(match choices.below(18) {
         0 => Command::Pause,
         1 | 2 => Command::Resume,
         3 => Command::TransitionTo { state },
@@ -118,6 +183,12 @@ fn event(choices: &mut Choices, engine: &Engine) -> Event {
         6 => Command::Restart,
         7 => Command::Runstop,
         8 if engine.is_paused() => Command::Step,
+        9 | 10 => Command::OnEdit { mode: OnEdit::Keep },
+        11 => Command::OnEdit { mode: OnEdit::Restart },
+        12 => Command::Saves { mode: Saves::Hold },
+        13 => Command::Saves { mode: Saves::Apply },
+        14 | 15 => Command::ApplyHeld,
+        16 => Command::DropHeld,
         _ => {
             let value = json!({ "data": choices.below(4) });
             return Event::Input(Input { bridge: "robot".into(), name: "light".into(), value });
@@ -129,16 +200,19 @@ fn event(choices: &mut Choices, engine: &Engine) -> Event {
 fn reads_back(records: &[Record], view: &View) -> Result<(), String> {
     let mut again = View::new(10.0);
     let mut compiler = Compiler::new(Vec::new());
+    // What names mean can depend on the program before.
+    let mut running: Arc<Program> = Arc::default();
     for record in records {
         let line = serde_json::to_string(record).map_err(|error| error.to_string())?;
         let mut read: Record = serde_json::from_str(&line).map_err(|error| format!("{error}: {line}"))?;
         if let (What::Load(read), What::Load(load)) = (&mut read.what, &record.what) {
             let file = &read.files[0];
-            let program = compiler.compile(Source::new(file.name.clone(), file.text.clone()));
+            let program = compiler.compile_after(Source::new(file.name.clone(), file.text.clone()), &running);
             read.program = program.ok().map(Arc::new);
             if read.program != load.program {
                 return Err(format!("the program differs: {line}"));
             }
+            running = read.program.clone().unwrap_or_default();
         }
         if read != *record {
             return Err(format!("read back as {read:?}: {line}"));

@@ -12,7 +12,7 @@ use super::message::{self, Direction, hint};
 use super::options::Options;
 use super::readable;
 use crate::model::{Description, Edit, Program, Robot};
-use crate::runtime::record::{Fault, Finding};
+use crate::runtime::record::{Fault, Finding, Held};
 use crate::runtime::{self, Command, Input, Record, Time, What};
 use crate::session::compile::{Compiler, Rejected};
 use crate::session::driver::Driver;
@@ -78,7 +78,8 @@ impl Bench {
         }
         let robots = if options.bridge.is_some() { Robots::AsProgrammed } else { Robots::Fake };
         let workshop = Workshop { folder, seed: options.seed, robots };
-        let mut driver = Driver::new(runtime::Options { seed: options.seed, ..runtime::Options::default() }, workshop);
+        let &Options { seed, on_edit, .. } = options;
+        let mut driver = Driver::new(runtime::Options { seed, on_edit, ..runtime::Options::default() }, workshop);
         driver.engine_mut().library(library);
         let mut pace = Pace::new(options.rate, std::time::Duration::ZERO);
         let due = pace.make();
@@ -209,6 +210,11 @@ impl Bench {
 
     pub fn records(&self) -> &[Record] {
         &self.records
+    }
+
+    /// What taking the held edit over would do; none where nothing is held.
+    pub fn held(&self) -> Option<&Held> {
+        self.driver.engine().held()
     }
 
     pub fn active(&self) -> Vec<String> {

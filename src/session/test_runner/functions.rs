@@ -12,7 +12,7 @@ use super::message::hint;
 use super::readable::sent;
 use super::value::{source, to_json, to_lua};
 use crate::runtime::What;
-use crate::runtime::{Command, Time};
+use crate::runtime::{Command, Saves, Time};
 
 /// The table a test calls `t`.
 pub fn table(lua: &Lua, api: &Rc<Api>) -> mlua::Result<Table> {
@@ -91,6 +91,9 @@ impl Functions<'_> {
         self.add("pause()", |_, api, ()| Ok(api.command(Command::Pause)?))?;
         self.add("resume()", |_, api, ()| Ok(api.command(Command::Resume)?))?;
         self.add("restart()", |_, api, ()| Ok(api.command(Command::Restart)?))?;
+        self.add("hold()", |_, api, ()| Ok(api.command(Command::Saves { mode: Saves::Hold })?))?;
+        self.add("apply()", |_, api, ()| Ok(api.command(Command::ApplyHeld)?))?;
+        self.add("drop()", |_, api, ()| Ok(api.command(Command::DropHeld)?))?;
         self.add("transition_to(path)", |_, api, state: String| Ok(api.command(Command::TransitionTo { state })?))?;
         self.add("jump_to(path)", |_, api, state: String| Ok(api.command(Command::JumpTo { state })?))?;
         self.add("set(path, value)", |_, api, (var, value): (String, Value)| {
@@ -109,6 +112,10 @@ impl Functions<'_> {
         })?;
         self.add("active()", |_, api, ()| Ok(api.with(|bench| Ok(bench.active()))?))?;
         self.add("is_active(path)", |_, api, path: String| Ok(api.with(|bench| bench.is_active(&path))?))?;
+        self.add("held()", |lua, api, ()| {
+            let held = api.with(|bench| Ok(bench.held().map(|held| json!(held))))?;
+            held.map_or(Ok(Value::Nil), |held| to_lua(lua, &held))
+        })?;
         self.add("outputs(name)", |lua, api, name: String| outputs(lua, api, &name))?;
         self.add("records(kind)", |lua, api, kind: Option<String>| records(lua, api, kind.as_deref()))?;
         self.add("errors()", |lua, api, ()| {

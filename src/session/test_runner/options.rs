@@ -4,6 +4,7 @@ use mlua::Table;
 
 use super::failure::Complaint;
 use super::message::hint;
+use crate::runtime::OnEdit;
 use crate::session::pace::Rate;
 
 #[derive(Clone, Debug)]
@@ -14,13 +15,15 @@ pub struct Options {
     pub world: Option<String>,
     pub rate: Rate,
     pub seed: u64,
+    pub on_edit: OnEdit,
 }
 
 const KEYS: [&str; 5] = ["bridge", "world", "rate", "seed", "on_edit"];
 
 impl Options {
     pub fn read(table: Option<&Table>) -> Result<Options, Complaint> {
-        let mut options = Options { bridge: None, world: None, rate: Rate::default(), seed: 1 };
+        let mut options =
+            Options { bridge: None, world: None, rate: Rate::default(), seed: 1, on_edit: OnEdit::default() };
         for (key, value) in table.into_iter().flat_map(|table| table.pairs::<mlua::Value, mlua::Value>()).flatten() {
             let key = key.as_string().map_or_else(|| key.type_name().to_string(), |key| key.to_string_lossy());
             options.take(&key, &value)?;
@@ -46,8 +49,13 @@ impl Options {
                 let seed = value.as_integer().and_then(|seed| u64::try_from(seed).ok());
                 self.seed = seed.ok_or_else(|| Complaint::new("`seed` is a whole number from 0 on"))?;
             }
-            "on_edit" if text(key, value)? == "restart" => {}
-            "on_edit" => return Err(Complaint::new("`on_edit` can only be \"restart\"")),
+            "on_edit" => {
+                self.on_edit = match &*text(key, value)? {
+                    "restart" => OnEdit::Restart,
+                    "keep" => OnEdit::Keep,
+                    _ => return Err(Complaint::new("`on_edit` is \"restart\" or \"keep\"")),
+                };
+            }
             key => return Err(Complaint::new(format!("there is no option `{key}`; {}", hint(key, KEYS.into_iter())))),
         }
         Ok(())

@@ -7,7 +7,7 @@ pub struct Example {
     pub place: String,
     pub kind: Kind,
     pub text: String,
-    /// Lines of its trace that say what happens to the program: an input, a command.
+    /// Lines of its trace that say what happens to the program: an input, a command, a save.
     pub fed: Vec<String>,
     /// Lines of its trace that say what it does.
     pub trace: Vec<String>,
@@ -105,5 +105,5 @@ pub fn examples() -> Vec<Example> {
 }
 
 fn is_fed(line: &str) -> bool {
-    matches!(line.split(' ').nth(1), Some("input" | "command"))
+    matches!(line.split(' ').nth(1), Some("input" | "command" | "save"))
 }

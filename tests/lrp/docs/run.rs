@@ -2,6 +2,7 @@
 
 use std::path::PathBuf;
 
+use lrp::model::Program;
 use lrp::runtime::{Command, Input, Options, Record, Time, What};
 use lrp::session::compile::{Compiler, Rejected};
 use lrp::session::driver::Driver;
@@ -22,11 +23,14 @@ pub struct Run {
     pub lines: Vec<String>,
 }
 
-/// What is done to the program, each with its time in ms: messages from its robot before the step, commands after it.
+/// What is done to the program, each with its time in ms: messages from its robot before the step, commands after it,
+/// then saves.
 #[derive(Default)]
 struct Feeds {
     inputs: Vec<(u64, Input)>,
     commands: Vec<(u64, Command)>,
+    /// Pieces of the text, each with what takes its place.
+    saves: Vec<(u64, (String, String))>,
 }
 
 pub fn run(example: &Example) -> Result<Run, String> {
@@ -34,7 +38,8 @@ pub fn run(example: &Example) -> Result<Run, String> {
     for line in &example.fed {
         feeds.read(line).ok_or_else(|| format!("`{line}` can't be read"))?;
     }
-    let program = match Compiler::new(Vec::new()).compile(Source::new("example.lrp", example.text.as_str())) {
+    let mut text = example.text.clone();
+    let program = match compile(&text) {
         Ok(program) => program,
         Err(Rejected { diagnostics, .. }) => return Ok(Run { errors: errors(&diagnostics), ..Run::default() }),
     };
@@ -55,8 +60,24 @@ pub fn run(example: &Example) -> Result<Run, String> {
         for (_, command) in feeds.commands.extract_if(.., |(at, _)| *at <= now) {
             driver.command(command, &mut see).map_err(refused)?;
         }
+        for (_, (old, new)) in feeds.saves.extract_if(.., |(at, _)| *at <= now) {
+            text = replaced(&text, &old, &new)?;
+            let program = compile(&text).map_err(|rejected| errors(&rejected.diagnostics).join("\n"))?;
+            driver.command(Command::Load(program.into()), &mut see).map_err(refused)?;
+        }
     }
     Ok(run)
+}
+
+fn compile(text: &str) -> Result<Program, Rejected> {
+    Compiler::new(Vec::new()).compile(Source::new("example.lrp", text))
+}
+
+fn replaced(text: &str, old: &str, new: &str) -> Result<String, String> {
+    match text.matches(old).count() {
+        1 => Ok(text.replace(old, new)),
+        count => Err(format!("`{old}` stands {count} times in the text")),
+    }
 }
 
 fn errors(diagnostics: &[Diagnostic]) -> Vec<String> {
@@ -65,12 +86,16 @@ fn errors(diagnostics: &[Diagnostic]) -> Vec<String> {
 }
 
 impl Feeds {
-    /// `300 input robot.light {"data":200}`, `400 command {"command":"pause"}`
+    /// `300 input robot.light {"data":200}`, `400 command {"command":"pause"}`, `500 save OLD => NEW`
     fn read(&mut self, line: &str) -> Option<()> {
         let mut words = line.splitn(3, ' ');
         let at = words.next()?.parse().ok()?;
         match (words.next()?, words.next()?) {
             ("command", command) => self.commands.push((at, serde_json::from_str(command).ok()?)),
+            ("save", edit) => {
+                let (old, new) = edit.split_once(" => ")?;
+                self.saves.push((at, (old.to_string(), new.to_string())));
+            }
             (_, input) => {
                 let (name, value) = input.split_once(' ')?;
                 let (bridge, name) = name.split_once('.')?;
@@ -93,6 +118,10 @@ impl Run {
             What::Set { var, value, .. } => format!("set {var} = {value}"),
             What::Output { bridge, name, value } => format!("output {bridge}.{name} {value}"),
             What::Log(log) => format!("log {}", log.message),
+            What::Held(held) => match &held.restarts {
+                Some(reason) => format!("held restarts: {reason}"),
+                None => "held".to_string(),
+            },
             What::Pause { .. } => "pause".to_string(),
             What::Resume => "resume".to_string(),
             What::Error(fault) => {

@@ -180,9 +180,9 @@ fn an_error_belongs_to_the_block_it_is_in() {
 fn positions_are_those_of_the_file() {
     let mut lua = lua();
     let block = compile(&mut lua, "\nlocal ok, why = pcall(function() error('dark') end)\nprint(why)\nerror(why)");
-    lua.set_place(block, "x.lrp", 13);
+    lua.set_place(block, &"x.lrp".into(), 13);
     for (first, said) in [(13, "x.lrp:14: dark"), (20, "x.lrp:21: dark")] {
-        lua.set_place(block, "x.lrp", first);
+        lua.set_place(block, &"x.lrp".into(), first);
         assert_eq!(lua.run(block), Ran::Failed);
         let log = lua.take_logs();
         assert_eq!(log, [LogLine { level: Level::Info, message: said.to_owned(), block: Some(block), line: 3 }]);
