@@ -179,7 +179,7 @@ struct Listed<'p, K, T> {
 
 fn bridges(program: &Program) -> Vec<Listed<'_, &str, (&str, &serde_json::Value)>> {
     let bridges = program.bridges.iter();
-    bridges.map(|it| Listed { path: &*it.name, key: &*it.name, text: (&*it.kind, &it.config) }).collect()
+    bridges.map(|it| Listed { path: &it.name, key: &*it.name, text: (&*it.kind, &it.config) }).collect()
 }
 
 /// Removed ones in the old order, then added and changed ones in the new order.

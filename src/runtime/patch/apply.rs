@@ -32,13 +32,13 @@ impl Engine {
     /// New variables whose scope runs, those with another initial value, and those whose initial value reads them. A
     /// machine that starts again sees to its own.
     fn to_initialise(&self, passage: &Passage, verdict: &Verdict) -> Vec<VarId> {
-        let Passage { old, new, matching } = *passage;
+        let Passage { old, new, matching } = passage;
         let alive: Vec<VarId> = (0..new.vars.len() as u32).map(VarId).filter(|&var| self.is_alive(var)).collect();
-        let before = passage.vars_before();
         let mut found: Vec<bool> = vec![false; new.vars.len()];
         for &var in &alive {
-            let was = before[var.index()];
-            found[var.index()] = was.is_none_or(|was| !same_block(old, old[was].init, new, new[var].init, matching));
+            let was = matching.was(var).map(|was| VarId(was.index));
+            let same = |was: VarId| same_block(old, old[was].init, new, new[var].init, matching);
+            found[var.index()] = !was.is_some_and(same);
         }
         let mut grown = true;
         while grown {
@@ -94,10 +94,9 @@ impl Engine {
 
     /// Spawns of active states that named something unknown are tried again when it exists.
     fn retry_spawns(&mut self, passage: &Passage, plan: &Plan, started: &mut Vec<MachineId>) {
-        let before = passage.states_before();
         for machine in (0..passage.new.machines.len() as u32).map(MachineId) {
             let Some(state) = self.active_state(machine) else { continue };
-            let Some(was) = before[state.index()] else { continue };
+            let Some(was) = passage.matching.was(state).map(|was| StateId(was.index)) else { continue };
             let known = started.len();
             for ((_, was), (index, spawn)) in passage.old[was].spawns().zip(passage.new[state].spawns()) {
                 if let (None, Some((nested, start))) = (was.target, spawn.target)

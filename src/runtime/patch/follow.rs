@@ -65,7 +65,7 @@ impl Passage<'_> {
     }
 
     fn visits(&self, old: &[u64]) -> Vec<u64> {
-        let count = |was: Option<StateId>| was.map_or(0, |was| old[was.index()]);
-        self.states_before().into_iter().map(count).collect()
+        let was = |state| self.matching.was(StateId(state)).map(|was| old[was.index as usize]);
+        (0..self.new.states.len() as u32).map(|state| was(state).unwrap_or(0)).collect()
     }
 }

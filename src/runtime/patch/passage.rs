@@ -18,26 +18,4 @@ impl Passage<'_> {
             None => self.old[machine].path.clone(),
         }
     }
-
-    /// By new state: the old one it was.
-    pub fn states_before(&self) -> Vec<Option<StateId>> {
-        let mut before = vec![None; self.new.states.len()];
-        for was in (0..self.old.states.len() as u32).map(StateId) {
-            if let Some(now) = self.matching.state(was) {
-                before[now.index()] = Some(was);
-            }
-        }
-        before
-    }
-
-    /// By new variable: the old one it was.
-    pub fn vars_before(&self) -> Vec<Option<VarId>> {
-        let mut before = vec![None; self.new.vars.len()];
-        for was in (0..self.old.vars.len() as u32).map(VarId) {
-            if let Some(now) = self.matching.var(was) {
-                before[now.index()] = Some(was);
-            }
-        }
-        before
-    }
 }

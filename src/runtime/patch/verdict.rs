@@ -4,7 +4,6 @@ use std::sync::Arc;
 
 use super::Passage;
 use crate::model::diff::{same_actions, same_spawns};
-use crate::model::names::Names;
 use crate::model::*;
 use crate::runtime::OnEdit;
 use crate::runtime::engine::{Engine, Running};
@@ -128,20 +127,12 @@ impl Judge<'_> {
             None => new.spawns.iter().collect::<Vec<_>>(),
             Some(state) => new[state].spawns().map(|(_, spawn)| spawn).collect(),
         };
-        spawns.retain(|spawn| self.names(spawn, by, machine));
+        spawns.retain(|spawn| spawn.machine == Some(machine));
         let missing = match (spawns.iter().find_map(|spawn| spawn.target), spawns.first()) {
             (Some((_, state)), _) => return Ok(state),
             (None, Some(spawn)) => Missing { state: spawn.state_name.clone(), span: spawn.span },
             (None, None) => Missing { state: last.clone(), span: new[machine].name_span },
         };
         new.state_named(machine, &missing.state).ok_or(missing)
-    }
-
-    /// Whether a spawn is of this machine, even if in a state that doesn't exist.
-    fn names(&self, spawn: &Spawn, by: Option<StateId>, machine: MachineId) -> bool {
-        match spawn.target {
-            Some((target, _)) => target == machine,
-            None => Names::of(self.passage.new).machine(by, &spawn.machine_name) == Some(machine),
-        }
     }
 }
