@@ -45,7 +45,7 @@ pub fn same_actions(old: &Program, a: StateId, new: &Program, b: StateId, matchi
         && was.onentry.iter().zip(&now.onentry).all(same_entry)
 }
 
-/// Whether entering a state spawns the same machines in the same order in both programs.
+/// Whether entering a state spawns the same machines in the same states, in the same order.
 pub fn same_spawns(old: &Program, a: StateId, new: &Program, b: StateId, matching: &Matching) -> bool {
     let (was, now): (Vec<_>, Vec<_>) = (old[a].spawns().collect(), new[b].spawns().collect());
     was.len() == now.len() && was.iter().zip(&now).all(|((_, was), (_, now))| same_spawn(old, was, new, now, matching))
@@ -70,12 +70,14 @@ pub fn same_modules(old: &Program, a: &[ModuleId], new: &Program, b: &[ModuleId]
     a.len() == b.len() && a.iter().zip(&b).all(|(a, b)| a.0 == b.0 && (a.1 == b.1 || same_code(a.1, b.1)))
 }
 
-fn same_spawn(old: &Program, was: &Spawn, new: &Program, now: &Spawn, matching: &Matching) -> bool {
-    if let (Some((machine, state)), Some(target)) = (was.target, now.target) {
-        return (matching.machine(machine), matching.state(state)) == (Some(target.0), Some(target.1));
+/// Whether two spawns are of the same machine in the same state; one that names something unknown says the same.
+pub fn same_spawn(old: &Program, was: &Spawn, new: &Program, now: &Spawn, matching: &Matching) -> bool {
+    match (was.target, now.target) {
+        (Some((machine, state)), Some((now_machine, now_state))) => {
+            matching.machine(machine) == Some(now_machine) && matching.state(state) == Some(now_state)
+        }
+        _ => spawn_keys(Side::Old(old, new), matching, was) == spawn_keys(Side::New(new), matching, now),
     }
-    let same_text = was.machine_name == now.machine_name && was.state_name == now.state_name;
-    same_text || spawn_keys(Side::Old(old, new), matching, was) == spawn_keys(Side::New(new), matching, now)
 }
 
 fn spawn_keys<'p>(side: Side<'p>, matching: &Matching, spawn: &'p Spawn) -> Vec<Key<'p>> {

@@ -19,6 +19,7 @@ pub mod matching;
 pub mod modules;
 pub mod names;
 pub mod program;
+pub mod renamed;
 pub mod resolve;
 mod suggestion;
 mod words;

@@ -28,6 +28,17 @@ impl Key {
         }
     }
 
+    /// The same with another text.
+    pub fn reading(&self, code: Arc<str>) -> Key {
+        Key { code, cells: self.cells.clone(), required: self.required.clone() }
+    }
+
+    /// Whether it is the same text of the same variables, though under other names they come in another order.
+    pub fn is_renamed(&self, other: &Key) -> bool {
+        let all = |a: &Key, b: &Key| a.cells.iter().all(|cell| b.cells.contains(cell));
+        self.code == other.code && self.required == other.required && all(self, other) && all(other, self)
+    }
+
     fn is_of(&self, program: &Program, block: &Block, cells: &[Cell]) -> bool {
         self.code == block.code
             && self.cells.iter().copied().eq(block.uses.iter().map(|var| cells[var.index()]))

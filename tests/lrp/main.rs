@@ -26,6 +26,7 @@ mod picture;
 mod plot;
 mod pty;
 mod quiet;
+mod renames;
 mod runs;
 mod runstop;
 mod settling;

@@ -4,6 +4,7 @@ pub mod any_block;
 pub mod any_text;
 mod corpus;
 mod dump;
+mod free_names;
 mod lua;
 mod properties;
 mod rendering;

@@ -42,7 +42,7 @@ pub fn run(example: &Example) -> Result<Run, String> {
         feeds.read(line).ok_or_else(|| format!("`{line}` can't be read"))?;
     }
     let mut text = example.text.clone();
-    let program = match compile(&text, &example.files) {
+    let program = match compile(&text, &example.files, &Program::default()) {
         Ok(program) => program,
         Err(Rejected { diagnostics, .. }) => return Ok(Run { errors: errors(&diagnostics), ..Run::default() }),
     };
@@ -65,16 +65,17 @@ pub fn run(example: &Example) -> Result<Run, String> {
         }
         for (_, (old, new)) in feeds.saves.extract_if(.., |(at, _)| *at <= now) {
             text = replaced(&text, &old, &new)?;
-            let program =
-                compile(&text, &example.files).map_err(|rejected| errors(&rejected.diagnostics).join("\n"))?;
+            let program = compile(&text, &example.files, driver.engine().program())
+                .map_err(|rejected| errors(&rejected.diagnostics).join("\n"))?;
             driver.command(Command::Load(program.into()), &mut see).map_err(refused)?;
         }
     }
     Ok(run)
 }
 
-fn compile(text: &str, files: &[(String, String)]) -> Result<Program, Rejected> {
-    Compiler::new(Vec::new()).with_files(Shelf::of(files.to_vec())).compile(Source::new("example.lrp", text))
+fn compile(text: &str, files: &[(String, String)], running: &Program) -> Result<Program, Rejected> {
+    let files = Shelf::of(files.to_vec());
+    Compiler::new(Vec::new()).with_files(files).compile_after(Source::new("example.lrp", text), running)
 }
 
 fn replaced(text: &str, old: &str, new: &str) -> Result<String, String> {
