@@ -1,6 +1,6 @@
 //! How two programs differ, as changes to elements named by their paths. Layout and comments are no difference.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::sync::Arc;
 
 use super::change::{Change, Element, Op};
@@ -44,7 +44,22 @@ fn same_blocks(old: &Program, a: &[BlockId], new: &Program, b: &[BlockId]) -> bo
 }
 
 pub fn same_block(old: &Program, a: BlockId, new: &Program, b: BlockId) -> bool {
-    let (a, b) = (&old[a].code, &new[b].code);
+    same_text(&old[a].code, &new[b].code) && same_modules(old, &old[a].requires, new, &new[b].requires)
+}
+
+/// The text of required Lua files counts as part of a block.
+pub fn same_modules(old: &Program, a: &[ModuleId], new: &Program, b: &[ModuleId]) -> bool {
+    if a.is_empty() && b.is_empty() {
+        return true;
+    }
+    let named = |program: &Program, modules: &[ModuleId]| -> BTreeMap<Arc<str>, Arc<str>> {
+        modules.iter().map(|&it| (program[it].name.clone(), program.module_text(it).clone())).collect()
+    };
+    let (a, b) = (named(old, a), named(new, b));
+    a.len() == b.len() && a.iter().zip(&b).all(|(a, b)| a.0 == b.0 && same_text(a.1, b.1))
+}
+
+fn same_text(a: &str, b: &str) -> bool {
     a == b || same_code(a, b)
 }
 

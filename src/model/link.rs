@@ -141,14 +141,31 @@ impl Resolver<'_> {
     }
 
     fn unknown_machine(&mut self, spawn: &ast::Spawn, by: Option<StateId>) {
-        let Some(elsewhere) = self.program.machines.iter().find(|machine| machine.name == spawn.machine.text) else {
+        let elsewhere = self.program.machines.iter().find(|machine| machine.name == spawn.machine.text).cloned();
+        let Some(elsewhere) = elsewhere else {
             let known = Names::of(&self.program).machines(by);
             return self.unknown(Code::UnknownMachine, "machine", &spawn.machine, known.iter().map(|name| &**name));
         };
+        if elsewhere.parent.is_none() {
+            return self.not_imported(spawn, &elsewhere);
+        }
         let message = format!("machine `{}` can't be spawned here: it is written in another state", spawn.machine.text);
         let help = "a spawn may name the machines of its own state, of the states around it, and those at top level";
         let diagnostic = Diagnostic::error(Code::UnknownMachine, spawn.machine.span, message);
         self.diagnostics.push(diagnostic.also(elsewhere.name_span, "written here").help(help));
+    }
+
+    /// A machine at top level of another file.
+    fn not_imported(&mut self, spawn: &ast::Spawn, machine: &Machine) {
+        let (name, file) = (&machine.name, &self.program.source(machine.span).name);
+        let exported = self.files[machine.span.file.0 as usize].exports().any(|export| export.text == *name);
+        let (why, help) = match exported {
+            true => (format!("this file doesn't import `{file}`"), format!("import `{file}` in this file as well")),
+            false => (format!("`{file}` doesn't export it"), format!("add `(export {name})` to `{file}`")),
+        };
+        let message = format!("machine `{name}` can't be spawned here: {why}");
+        let diagnostic = Diagnostic::error(Code::UnknownMachine, spawn.machine.span, message);
+        self.diagnostics.push(diagnostic.also(machine.name_span, "written here").help(help));
     }
 
     /// Where a transition can be taken, it joins the lists that a step walks.

@@ -2,20 +2,25 @@
 //! Knows nothing of running one.
 
 pub mod blocks;
+mod bridges;
 pub mod change;
 pub mod description;
 pub mod diff;
 pub mod edit;
+pub mod files;
+mod globals;
 pub mod ids;
 mod link;
 pub mod matching;
+pub mod modules;
 pub mod names;
 pub mod program;
 pub mod resolve;
 
 pub use description::Description;
 pub use edit::Edit;
+pub use files::File;
 pub use ids::*;
 pub use matching::Matching;
 pub use program::*;
-pub use resolve::{Robot, resolve};
+pub use resolve::{Robot, resolve, resolve_files};

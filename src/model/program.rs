@@ -4,12 +4,12 @@ use std::ops::Index;
 use std::sync::Arc;
 
 use super::ids::*;
-use crate::syntax::{Diagnostic, Source, Span};
+use crate::syntax::{Diagnostic, FileId, Source, Span};
 
 /// Elements that refer to something that doesn't exist keep the name as written and are skipped when run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Program {
-    /// The texts, by the `FileId` of spans; the first is the program itself.
+    /// The texts, by the `FileId` of spans: the program itself, the files it imports, the Lua files it requires.
     pub sources: Vec<Source>,
     pub machines: Vec<Machine>,
     pub states: Vec<State>,
@@ -17,8 +17,12 @@ pub struct Program {
     pub events: Vec<Event>,
     pub vars: Vec<Var>,
     pub blocks: Vec<Block>,
-    /// Top-level machines, variables and spawns in the order written.
+    pub modules: Vec<Module>,
+    /// Top-level machines in the order written, those of the program itself before those of imported files.
     pub tops: Vec<MachineId>,
+    /// By `FileId`: the top-level machines that spawns in the file may name, its own before those it imports.
+    pub spawnable: Vec<Vec<MachineId>>,
+    /// In the order they are initialised.
     pub globals: Vec<VarId>,
     pub spawns: Vec<Spawn>,
     pub bridges: Vec<Bridge>,
@@ -152,6 +156,18 @@ pub struct Block {
     pub owner: Owner,
     /// The variables it reads or writes, found through its scopes.
     pub uses: Vec<VarId>,
+    /// The Lua files it requires by a literal name, also through other ones; sorted.
+    pub requires: Vec<ModuleId>,
+}
+
+/// A Lua file that blocks require by a literal name: its text counts as part of each block that requires it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Module {
+    /// `a.b` for the file `a/b.lua`.
+    pub name: Arc<str>,
+    pub file: FileId,
+    /// Those that it requires in turn, also through other ones; sorted.
+    pub requires: Vec<ModuleId>,
 }
 
 /// The element a block is written in.
@@ -191,11 +207,16 @@ index! {
     EventId => events: Event,
     VarId => vars: Var,
     BlockId => blocks: Block,
+    ModuleId => modules: Module,
 }
 
 impl Program {
     pub fn source(&self, span: Span) -> &Source {
         &self.sources[span.file.0 as usize]
+    }
+
+    pub fn module_text(&self, module: ModuleId) -> &Arc<str> {
+        &self.sources[self[module].file.0 as usize].text
     }
 
     /// The machine that encloses the state a machine is written in.

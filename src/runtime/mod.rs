@@ -9,6 +9,7 @@ mod faults;
 pub mod findings;
 mod force;
 mod machine;
+mod modules;
 mod note;
 mod obey;
 mod patch;

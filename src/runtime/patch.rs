@@ -9,7 +9,7 @@ use super::machine::Spawner;
 use super::plan::Plan;
 use super::record::What;
 use crate::model::blocks::syntax_diagnostic;
-use crate::model::diff::{same_actions, same_block};
+use crate::model::diff::{same_actions, same_block, same_modules};
 use crate::model::*;
 use crate::syntax::{Code, Diagnostic, Source, Span};
 
@@ -22,6 +22,7 @@ impl Engine {
         let changes = if first { Vec::new() } else { comparison.changes.clone() };
         let reason = self.why_restart(&new);
         self.follow(&comparison.matching, &new);
+        self.take_over_modules(&old, &new);
         for uncompiled in self.store.take_over(&old, &new, &comparison.matching) {
             let span = new[uncompiled.block].span;
             let finding = syntax_diagnostic(new.source(span), span, &uncompiled.error);
@@ -143,9 +144,8 @@ impl Engine {
                 }
             }
         }
-        let (globals, locals): (Vec<VarId>, Vec<VarId>) =
-            alive.into_iter().filter(|var| found[var.index()]).partition(|&var| program[var].machine.is_none());
-        globals.into_iter().chain(locals).collect()
+        let locals = alive.into_iter().filter(|&var| program[var].machine.is_some());
+        program.globals.iter().copied().chain(locals).filter(|var| found[var.index()]).collect()
     }
 
     fn order_tops(&mut self) {
@@ -210,7 +210,11 @@ fn moved(old: &Program, new: &Program, code: Code, span: Span) -> Option<(Span, 
     let was = old.blocks.iter().find(holds).filter(|_| happens_while_running)?;
     let owner = old.owner_path_of(was);
     let twins = |program: &Program| -> Vec<Span> {
-        let same = |block: &&Block| block.code == was.code && program.owner_path_of(block) == owner;
+        let same = |block: &&Block| {
+            block.code == was.code
+                && program.owner_path_of(block) == owner
+                && same_modules(old, &was.requires, program, &block.requires)
+        };
         program.blocks.iter().filter(same).map(|block| block.span).collect()
     };
     let nth = twins(old).iter().position(|&span| span == was.span)?;

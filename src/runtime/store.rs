@@ -17,8 +17,8 @@ pub struct Store {
     stopped: usize,
 }
 
-/// What makes two blocks the same function: their text and the cells of the variables they use.
-type Key = (Arc<str>, Box<[Cell]>);
+/// What makes two blocks the same function: their text, the cells of the variables they use, the texts they require.
+type Key = (Arc<str>, Box<[Cell]>, Box<[Arc<str>]>);
 
 #[derive(Clone, Copy, Default)]
 pub struct Compiled {
@@ -113,7 +113,9 @@ impl Store {
         self.stopped = 0;
         let mut uncompiled = Vec::new();
         for (index, block) in new.blocks.iter().enumerate() {
-            let key = (block.code.clone(), block.uses.iter().map(|&var| self.cell(var)).collect());
+            let cells = block.uses.iter().map(|&var| self.cell(var)).collect();
+            let texts = block.requires.iter().map(|&module| new.module_text(module).clone()).collect();
+            let key = (block.code.clone(), cells, texts);
             let mut compiled = match kept.get_mut(&key).and_then(VecDeque::pop_front) {
                 Some(compiled) => compiled,
                 None => self.compile(new, block).unwrap_or_else(|error| {

@@ -99,7 +99,11 @@ codes! {
     EmptyProgram "empty-program",
     UnknownBridge "unknown-bridge",
     BadBridge "bad-bridge",
-    Unsupported "unsupported",
+    // Other files.
+    UnreadableImport "unreadable-import",
+    ImportCycle "import-cycle",
+    NothingExported "nothing-exported",
+    UnknownModule "unknown-module",
     // While it runs.
     Runtime "runtime-error",
     NotBoolean "not-boolean",

@@ -2,7 +2,7 @@
 //! how examples are marked, and nothing of what they are about.
 //!
 //! A fence ```` ```lrp ```` is a program without mistakes; ```` ```lrp broken ```` must be reported; ```` ```lrp faulty ````
-//! must go wrong while it runs. A fence ```` ```trace ```` after it tells lines of its run, in order, others left out;
+//! must go wrong while it runs; ```` ```lrp file NAME ```` is a file that programs after it on the page may import. A fence ```` ```trace ```` after it tells lines of its run, in order, others left out;
 //! ```` ```json ```` in docs/trace.md is a record a line.
 
 mod page;
@@ -49,6 +49,7 @@ fn a_wrong_claim_is_found() {
         place: "here".to_string(),
         kind,
         text: program.to_string(),
+        files: Vec::new(),
         fed: Vec::new(),
         trace: claims.iter().map(ToString::to_string).collect(),
     };

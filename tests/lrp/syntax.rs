@@ -1,5 +1,7 @@
 //! The syntax layer: text in, tree and diagnostics out.
 
+pub mod any_block;
+pub mod any_text;
 mod corpus;
 mod dump;
 mod lua;

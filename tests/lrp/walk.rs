@@ -63,7 +63,7 @@ impl Kept {
     }
 }
 
-fn walk(numbers: &[u32]) -> Result<(), String> {
+pub fn walk(numbers: &[u32]) -> Result<(), String> {
     let choices = &mut Choices::new(numbers);
     let mut plot = Plot::draw(choices);
     let mut stage = Stage::new(1, Duration::from_secs(5), Vec::new());

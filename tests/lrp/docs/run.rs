@@ -9,6 +9,7 @@ use lrp::session::robots::{Robots, Workshop};
 use lrp::syntax::{Diagnostic, Source};
 
 use super::page::Example;
+use crate::shelf::Shelf;
 
 const PERIOD_MS: u64 = 100;
 const STEPS: u64 = 50;
@@ -34,7 +35,8 @@ pub fn run(example: &Example) -> Result<Run, String> {
     for line in &example.fed {
         feeds.read(line).ok_or_else(|| format!("`{line}` can't be read"))?;
     }
-    let program = match Compiler::new(Vec::new()).compile(Source::new("example.lrp", example.text.as_str())) {
+    let mut compiler = Compiler::new(Vec::new()).with_files(Shelf::of(example.files.clone()));
+    let program = match compiler.compile(Source::new("example.lrp", example.text.as_str())) {
         Ok(program) => program,
         Err(Rejected { diagnostics, .. }) => return Ok(Run { errors: errors(&diagnostics), ..Run::default() }),
     };
