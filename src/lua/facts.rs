@@ -1,10 +1,11 @@
 //! What can be said of a block without running it. Knows nothing of variables.
 
-use std::sync::LazyLock;
+use std::sync::{Arc, LazyLock};
 
 use serde_json::Value;
 
 use super::bytecode::{Kind, Use};
+use super::known::Known;
 use super::value::Bounds;
 use super::{Access, Failure, Limits, Lua, SyntaxError, source};
 
@@ -27,6 +28,7 @@ pub struct Facts {
 pub struct Checker {
     lua: Lua,
     access: Access,
+    known: Known,
 }
 
 /// Bounds of a configuration.
@@ -41,7 +43,7 @@ impl Default for Checker {
 impl Checker {
     /// For blocks that will have this access.
     pub fn new(access: Access) -> Self {
-        Self { lua: Lua::new(Limits::default(), Access::Sandboxed, 0), access }
+        Self { lua: Lua::new(Limits::default(), Access::Sandboxed, 0), access, known: Known::default() }
     }
 
     /// The names that every block has at hand.
@@ -51,6 +53,24 @@ impl Checker {
             Access::System => SYSTEM,
         };
         known_names().iter().chain(besides).copied().collect()
+    }
+
+    /// Begins with another program: blocks that were in one of the last two are known.
+    pub fn next_program(&mut self) {
+        self.known.next_program();
+    }
+
+    /// The free names of a block of the program; one that is known isn't looked at again.
+    ///
+    /// # Errors
+    /// As for `check`.
+    pub fn check_block(&mut self, code: &Arc<str>) -> Result<Arc<Facts>, SyntaxError> {
+        if let Some(facts) = self.known.get(code) {
+            return Ok(facts);
+        }
+        let facts = Arc::new(self.check(code)?);
+        self.known.insert(code.clone(), facts.clone());
+        Ok(facts)
     }
 
     /// The free names of a block.

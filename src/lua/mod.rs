@@ -14,6 +14,7 @@ mod facts;
 mod failure;
 mod fingerprint;
 mod guard;
+mod known;
 mod log;
 mod message;
 mod pattern;

@@ -8,11 +8,12 @@ use crate::syntax::nearest::nearest;
 use crate::syntax::{Code, Diagnostic, Source, Span};
 
 pub fn resolve_blocks(program: &mut Program, checker: &mut Checker) {
+    checker.next_program();
     let at_hand = checker.at_hand();
     let mut found = Vec::new();
     for index in 0..program.blocks.len() {
         let block = &program.blocks[index];
-        let facts = match checker.check(&block.code) {
+        let facts = match checker.check_block(&block.code) {
             Ok(facts) => facts,
             Err(error) => {
                 let span = error_span(program.source(block.span), block, &error, checker);
@@ -59,11 +60,13 @@ fn unknown_name(
 ) -> Option<Diagnostic> {
     let block = &program.blocks[block];
     let is_bridge = program.bridges.iter().any(|bridge| *bridge.name == *name.name);
-    let is_at_hand = at_hand.contains(&&*name.name);
+    let is_known = is_bridge || at_hand.contains(&&*name.name);
+    if is_known && access == Access::Read {
+        return None;
+    }
     let span = place(program.source(block.span), block.span, name.line, Some((&name.name, Role::Name)));
     match access {
-        Access::Read if is_bridge || is_at_hand => None,
-        Access::Write if is_bridge || is_at_hand => {
+        Access::Write if is_known => {
             let message = format!("`{}` can't be assigned: it is not a variable of this program", name.name);
             Some(Diagnostic::error(Code::UnknownVariable, span, message).help("declare a variable of another name"))
         }

@@ -59,7 +59,7 @@ impl Resolver<'_> {
     fn link_spawn(&mut self, spawn: &ast::Spawn, by: Option<StateId>) -> Spawn {
         let machine = Names::of(&self.program).machine(by, &spawn.machine.text);
         let target = machine.and_then(|machine| {
-            let state = self.program.state_named(machine, &spawn.state.text);
+            let state = self.state_named(machine, &spawn.state.text);
             if state.is_none() {
                 self.unknown_state(machine, &spawn.state);
             }
@@ -116,10 +116,10 @@ impl Resolver<'_> {
             },
             _ => machine,
         };
-        let target = self.program.state_named(owner, &tree.target.text);
+        let target = self.state_named(owner, &tree.target.text);
         if target.is_none() {
             self.unknown_state(owner, &tree.target);
-            if kind == TransitionKind::Exit && self.program.state_named(machine, &tree.target.text).is_some() {
+            if kind == TransitionKind::Exit && self.state_named(machine, &tree.target.text).is_some() {
                 self.help_last(format!(
                     "an exit goes to a state of `{}`; `on` goes to one of `{}`",
                     self.name(owner),
@@ -182,10 +182,16 @@ impl Resolver<'_> {
             }
             return;
         }
-        let states: Vec<StateId> =
-            self.program[machine].states.iter().copied().filter(|&state| transition.leaves(state)).collect();
+        let states = match &transition.sources {
+            Sources::Any => &self.program.machines[machine.index()].states,
+            Sources::These { states, .. } => states,
+        };
         for state in states {
-            self.program.states[state.index()].outgoing.push(id);
+            let outgoing = &mut self.program.states[state.index()].outgoing;
+            // A state may be named twice among the sources.
+            if outgoing.last() != Some(&id) {
+                outgoing.push(id);
+            }
         }
     }
 
@@ -197,7 +203,7 @@ impl Resolver<'_> {
         };
         let mut states = Vec::new();
         for name in names {
-            match self.program.state_named(machine, &name.text) {
+            match self.state_named(machine, &name.text) {
                 Some(state) => states.push(state),
                 None => self.unknown_state(machine, name),
             }

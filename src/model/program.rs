@@ -253,10 +253,6 @@ impl Program {
             Owner::Transition(transition) => self[self[transition].machine].path.clone(),
         }
     }
-
-    pub fn state_named(&self, machine: MachineId, name: &str) -> Option<StateId> {
-        self[machine].states.iter().copied().find(|&state| &*self[state].name == name)
-    }
 }
 
 impl Transition {

@@ -1,6 +1,7 @@
 //! From tree to program: declares every element, then looks every name up from the innermost scope outwards.
 //! What can't be found is reported and left unresolved; the rest of the program stays usable.
 
+use std::collections::HashMap;
 use std::sync::Arc;
 
 use super::blocks::syntax_diagnostic;
@@ -58,6 +59,7 @@ pub(super) struct Resolver<'t> {
     pub(super) diagnostics: Vec<Diagnostic>,
     pub(super) machines: Vec<(MachineId, &'t ast::Machine)>,
     pub(super) states: Vec<(StateId, &'t ast::State)>,
+    named_states: HashMap<(MachineId, Arc<str>), StateId>,
     pub(super) spawns: Vec<&'t ast::Spawn>,
     /// Blocks of imported files that don't count: they have to be Lua nevertheless.
     pub(super) ignored: Vec<&'t ast::Block>,
@@ -244,11 +246,12 @@ impl<'t> Resolver<'t> {
     }
 
     fn declare_state(&mut self, state: &'t ast::State, machine: MachineId) {
-        if let Some(twin) = self.program.state_named(machine, &state.name.text) {
+        let id = StateId(self.program.states.len() as u32);
+        let twin = *self.named_states.entry((machine, state.name.text.clone())).or_insert(id);
+        if twin != id {
             let first = self.program[twin].name_span;
             return self.duplicate("state", &state.name, first);
         }
-        let id = StateId(self.program.states.len() as u32);
         self.program.states.push(State {
             name: state.name.text.clone(),
             path: join(&self.program[machine].path, &state.name.text),
@@ -271,6 +274,10 @@ impl<'t> Resolver<'t> {
                 self.program.states[id.index()].machines.push(nested);
             }
         }
+    }
+
+    pub(super) fn state_named(&self, machine: MachineId, name: &Arc<str>) -> Option<StateId> {
+        self.named_states.get(&(machine, name.clone())).copied()
     }
 
     pub(super) fn duplicate(&mut self, what: &str, name: &ast::Name, first: Span) {

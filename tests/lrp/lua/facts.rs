@@ -1,5 +1,7 @@
 //! What is said of a block without running it.
 
+use std::sync::Arc;
+
 use lrp::lua::{Checker, Facts, NameUse, known_fields, known_names};
 use serde_json::json;
 
@@ -76,4 +78,28 @@ fn a_configuration_is_data() {
     assert_eq!(checker.config("a = 1,\n\nb = = 2").unwrap_err().line, 3);
     assert!(checker.config("a = (function() while true do end end)()").unwrap_err().message.contains("250 ms"));
     assert_eq!(checker.config("a = 'still here'"), Ok(json!({ "a": "still here" })));
+}
+
+#[test]
+fn a_block_is_looked_at_once_while_programs_have_it() {
+    let mut checker = Checker::default();
+    let code = Arc::from("speed = limit");
+    let look = |checker: &mut Checker| checker.check_block(&code).expect("this is Lua");
+    let first = look(&mut checker);
+    assert_eq!(*first, facts(&code));
+    for missing_from in [0, 1] {
+        (0..=missing_from).for_each(|_| checker.next_program());
+        assert!(Arc::ptr_eq(&first, &look(&mut checker)), "known after {missing_from} programs without it");
+    }
+    (0..3).for_each(|_| checker.next_program());
+    assert!(!Arc::ptr_eq(&first, &look(&mut checker)), "forgotten after two programs without it");
+}
+
+#[test]
+fn a_block_that_is_no_lua_is_never_known() {
+    let mut checker = Checker::default();
+    let code = Arc::from("speed = = 1");
+    let error = checker.check_block(&code).unwrap_err();
+    checker.next_program();
+    assert_eq!(checker.check_block(&code), Err(error));
 }

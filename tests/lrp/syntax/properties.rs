@@ -4,7 +4,7 @@ use std::time::{Duration, Instant};
 
 use lrp::syntax::lua_tokens::{same_code, tokens};
 use lrp::syntax::parser::MAX_BYTES;
-use lrp::syntax::{Code, FileId, Source, Span, parse};
+use lrp::syntax::{Code, FileId, Source, parse};
 use proptest::prelude::*;
 use proptest::sample::{Index, select};
 
