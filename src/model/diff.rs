@@ -106,7 +106,9 @@ impl<'p> Both<'p> {
                 changes.push(change(Op::Added, new.path(now)));
                 continue;
             };
-            if old.name(was) != new.name(now) {
+            // A machine of an imported file has another path when it is exported.
+            let is_top = new.scope(now).is_none();
+            if old.name(was) != new.name(now) || is_top && old.path(was) != new.path(now) {
                 changes.push(Change { to: Some(new.path(now).clone()), ..change(Op::Renamed, old.path(was)) });
             }
             if !self.does_the_same(was, now) {

@@ -47,18 +47,7 @@ fn loaded(load: &Load) -> String {
     let reason = load.reason.as_ref().map(|reason| format!("; restarts: {reason}")).unwrap_or_default();
     assert_eq!(load.restarted, load.reason.is_some());
     let changes: String = load.changes.iter().map(changed).collect();
-    // What the checks find has a corpus of its own; here it matters whether anything runs, and which files are part of it.
-    let told = ["no-spawn", "import-cycle", "nothing-exported", "unknown-module"];
-    let findings = load.findings.iter().filter(|it| told.contains(&&*it.code));
-    let findings: String = findings
-        .map(|it| {
-            format!(
-                "
-    {}",
-                finding(it)
-            )
-        })
-        .collect();
+    let findings = told(&load.findings);
     let machines = machines(&load.again, &load.discarded);
     format!("load{reason}{changes}{machines}{findings}")
 }
@@ -66,8 +55,16 @@ fn loaded(load: &Load) -> String {
 fn waiting(held: &Held) -> String {
     let reason = held.restarts.as_ref().map(|reason| format!("; would restart: {reason}")).unwrap_or_default();
     let changes: String = held.changes.iter().map(changed).collect();
-    let findings: String = held.findings.iter().map(|it| format!("\n    {}", finding(it))).collect();
+    let findings = told(&held.findings);
     format!("held{reason}{changes}{}{findings}", machines(&held.again, &held.discarded))
+}
+
+/// What the checks find has a corpus of its own; here it matters what is an error, whether anything runs, and which files
+/// are part of it.
+fn told(findings: &[Finding]) -> String {
+    let codes = ["no-spawn", "import-cycle", "nothing-exported", "unknown-module"];
+    let told = findings.iter().filter(|it| it.severity == "error" || codes.contains(&&*it.code));
+    told.map(|it| format!("\n    {}", finding(it))).collect()
 }
 
 fn machines(again: &[std::sync::Arc<str>], discarded: &[std::sync::Arc<str>]) -> String {
