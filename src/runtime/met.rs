@@ -7,7 +7,7 @@ use super::engine::Engine;
 use super::record::{Fault, What};
 use crate::model::breakpoints::{Spot, SpotNames};
 use crate::model::*;
-use crate::syntax::{Code, Span};
+use crate::syntax::{Code, Diagnostic, Span};
 
 /// Something was met for which the program is to pause.
 pub(super) enum Met {
@@ -39,7 +39,8 @@ impl Engine {
 
     /// A fault that was not known before. What the checks found in the text is not something that has happened.
     pub(super) fn meet_fault(&mut self, code: Code, span: Span, fault: &Fault) {
-        let found = || self.program.findings.iter().any(|finding| (finding.code, finding.span) == (code, span));
+        let is_it = |finding: &Diagnostic| finding.is_error() && (finding.code, finding.span) == (code, span);
+        let found = || self.program.findings.iter().any(is_it);
         if self.on_error == OnError::Pause && happens_while_running(code) && !found() {
             let met = Met::Fault { message: fault.message.clone(), state: fault.state.clone() };
             self.breakpoints.met.push(met);
