@@ -69,11 +69,14 @@ impl Walk {
         let known = self.stage.records.len();
         self.happens(Event::Save(text))?;
         let fresh = &self.stage.records[known..];
-        let renamed = |load: &Load| match &load.changes[..] {
-            [Change { op: Op::Renamed, path, to: Some(to), .. }] => {
-                path.ends_with(&old) && to.ends_with(&new) && !load.restarted && load.again.is_empty()
-            }
-            _ => false,
+        let is_it = |change: &Change| {
+            let ends = |path: &str, name: &str| path.rsplit('/').next() == Some(name);
+            change.op == Op::Renamed && ends(&change.path, &old) && change.to.as_ref().is_some_and(|to| ends(to, &new))
+        };
+        // A name that meant nothing where it stood may have been changed with it.
+        let renamed = |load: &Load| {
+            let alone = load.changes.len() == 1;
+            load.changes.iter().any(is_it) && !(alone && (load.restarted || !load.again.is_empty()))
         };
         match loaded(fresh) {
             Some(load) if runs && !renamed(load) => {

@@ -88,14 +88,12 @@ fn visits(engine: &Engine, state: &str) -> (String, u64) {
     (state.into(), engine.visits(state).unwrap_or(0))
 }
 
-/// A path after an edit that may have renamed something on it.
+/// A path after an edit that may have renamed things on it: the innermost of them says it all.
 fn called(load: &Load, path: &str) -> String {
-    let mut renames = load.changes.iter().filter_map(|change| Some((&*change.path, &**change.to.as_ref()?)));
-    let inner = renames.find_map(|(old, new)| Some((new, path.strip_prefix(old)?)));
-    match inner {
-        Some((new, rest)) if rest.is_empty() || rest.starts_with('/') => format!("{new}{rest}"),
-        _ => path.into(),
-    }
+    let renames = load.changes.iter().filter_map(|change| Some((&*change.path, &**change.to.as_ref()?)));
+    let on_it = renames.filter_map(|(old, new)| Some((new, path.strip_prefix(old)?)));
+    let on_it = on_it.filter(|(_, rest)| rest.is_empty() || rest.starts_with('/'));
+    on_it.min_by_key(|(_, rest)| rest.len()).map_or(path.into(), |(new, rest)| format!("{new}{rest}"))
 }
 
 /// Whether an edit has anything to do with an active state.
