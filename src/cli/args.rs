@@ -7,7 +7,7 @@ use clap::{ArgAction, Parser, Subcommand, ValueEnum};
 
 use crate::lua::{Access, Limits};
 use crate::model::Robot;
-use crate::runtime::{OnEdit, Options, Saves, Time};
+use crate::runtime::{OnEdit, OnError, Options, Saves, Time};
 use crate::session::engine_thread::Pacing;
 use crate::session::live::Setup;
 use crate::session::pace::Rate;
@@ -116,6 +116,9 @@ pub struct RunArgs {
     /// place, and starts only a machine again whose active state is gone or spawns something else
     #[arg(long, value_name = "HOW", value_enum, default_value_t = EditMode::Restart)]
     pub on_edit: EditMode,
+    /// Pause at the first thing that goes wrong while it runs; without a screen, end there
+    #[arg(long, action = ArgAction::SetTrue)]
+    pub pause_on_error: bool,
     /// How long a block may run before it is stopped, ms
     #[arg(long, value_name = "MS", default_value = "250", value_parser = clap::value_parser!(u64).range(1..=60_000))]
     pub block_limit: u64,
@@ -173,6 +176,7 @@ impl RunArgs {
         let limits =
             Limits { time: Duration::from_millis(self.block_limit), memory: (self.memory_limit << 20) as usize };
         let access = if self.allow_system { Access::System } else { Access::Sandboxed };
+        let on_error = if self.pause_on_error { OnError::Pause } else { OnError::Continue };
         let clock = if self.virtual_time { Clock::Virtual } else { Clock::Real };
         let on_edit = match self.on_edit {
             EditMode::Restart => OnEdit::Restart,
@@ -180,7 +184,7 @@ impl RunArgs {
         };
         Setup {
             file: self.file.clone(),
-            options: Options { limits, access, seed: self.seed, on_edit, ..Options::default() },
+            options: Options { limits, access, seed: self.seed, on_edit, on_error, ..Options::default() },
             pacing: Pacing { rate: self.rate, clock, until: self.until.map(|time| Time(time.as_micros() as u64)) },
             robots: self.bridge.clone(),
         }

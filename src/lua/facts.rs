@@ -58,16 +58,7 @@ impl Checker {
     /// # Errors
     /// The text is neither an expression nor statements.
     pub fn check(&mut self, code: &str) -> Result<Facts, SyntaxError> {
-        // SAFETY: nothing runs, and there is no memory limit.
-        let (_, uses) = self.lua.unlimited(|lua| unsafe { source::analyse(lua.stack.state(), code) })?;
-        let mut facts = Facts::default();
-        for Use { name, line, kind } in uses {
-            match kind {
-                Kind::Read => facts.reads.push(NameUse { name, line }),
-                Kind::Write => facts.writes.push(NameUse { name, line }),
-            }
-        }
-        Ok(facts)
+        self.lua.facts(code)
     }
 
     /// The value of `{code}`: a configuration, which is data, so no names are at hand. Lines are those of `code`.
@@ -85,6 +76,30 @@ impl Checker {
         let value = self.lua.eval_within(block, CONFIG);
         self.lua.free_block(block);
         value.map_err(|Failure { message, line, token, .. }| SyntaxError { message, line, token })
+    }
+}
+
+impl Lua {
+    /// The free names of a block.
+    ///
+    /// # Errors
+    /// The text is neither an expression nor statements.
+    pub fn facts(&mut self, code: &str) -> Result<Facts, SyntaxError> {
+        // SAFETY: nothing runs, and there is no memory limit.
+        let (_, uses) = self.unlimited(|lua| unsafe { source::analyse(lua.stack.state(), code) })?;
+        let mut facts = Facts::default();
+        for Use { name, line, kind } in uses {
+            match kind {
+                Kind::Read => facts.reads.push(NameUse { name, line }),
+                Kind::Write => facts.writes.push(NameUse { name, line }),
+            }
+        }
+        Ok(facts)
+    }
+
+    /// Every name that blocks can use besides variables: built-in ones, and robots.
+    pub fn at_hand(&self) -> Vec<String> {
+        self.desk.known.borrow().iter().cloned().collect()
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::sync::Arc;
 
+use super::breakpoints;
 use super::change::Change;
 use super::diff::diff;
 use super::matching::Matching;
@@ -53,7 +54,8 @@ impl From<Program> for Edit {
 impl Comparison {
     fn between(before: &Arc<Program>, program: &Program) -> Comparison {
         let matching = Matching::of(before, program);
-        let changes = diff(before, program, &matching);
+        let mut changes = diff(before, program, &matching);
+        changes.extend(breakpoints::changes(before, program, &matching));
         Comparison { before: Arc::clone(before), matching, changes }
     }
 }

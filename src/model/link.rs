@@ -9,7 +9,7 @@ use super::program::*;
 use super::resolve::Resolver;
 use crate::syntax::ast::{self, MachineItem, StateItem};
 use crate::syntax::nearest::nearest;
-use crate::syntax::{Code, Diagnostic};
+use crate::syntax::{Code, Diagnostic, Span};
 
 /// Names listed at most where none is near to the one that was meant.
 const LISTED: usize = 8;
@@ -34,6 +34,11 @@ impl Resolver<'_> {
 
     fn link_state(&mut self, id: StateId, tree: &ast::State) {
         let machine = Some(self.program[id].machine);
+        let breaks = tree.items.iter().filter_map(|item| match item {
+            StateItem::Break(span) => Some(*span),
+            _ => None,
+        });
+        self.program.states[id.index()].breakpoint = self.first_break(breaks);
         for item in &tree.items {
             match item {
                 StateItem::OnEntry(ast::Entry::Action(block)) => {
@@ -52,9 +57,22 @@ impl Resolver<'_> {
                     let block = self.block(block, machine, Owner::State(id));
                     self.program.states[id.index()].onexit.push(block);
                 }
-                StateItem::Machine(_) => {}
+                StateItem::Break(_) | StateItem::Machine(_) => {}
             }
         }
+    }
+
+    /// One `(break)` in a place is enough.
+    fn first_break(&mut self, mut breaks: impl Iterator<Item = Span>) -> Option<Span> {
+        let first = breaks.next()?;
+        for span in breaks {
+            self.diagnostics.push(
+                Diagnostic::error(Code::Duplicate, span, "a second `break` here; one is enough")
+                    .also(first, "the first one")
+                    .help("remove one of them"),
+            );
+        }
+        Some(first)
     }
 
     fn link_spawn(&mut self, spawn: &ast::Spawn, by: Option<StateId>) -> Spawn {
@@ -90,6 +108,7 @@ impl Resolver<'_> {
             target,
             name: tree.name.as_ref().map(|name| name.text.clone()),
             trigger,
+            breakpoint: self.first_break(tree.breaks.iter().copied()),
             span: tree.span,
         };
         self.attach(id, &transition);

@@ -3,6 +3,7 @@
 
 pub mod alias;
 pub mod blocks;
+pub mod breakpoints;
 pub mod change;
 pub mod description;
 pub mod diff;

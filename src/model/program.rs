@@ -62,6 +62,8 @@ pub struct State {
     pub outgoing: Vec<TransitionId>,
     /// Exit transitions of the machines written in it, which leave this state.
     pub exits: Vec<TransitionId>,
+    /// Its `(break)`.
+    pub breakpoint: Option<Span>,
     pub span: Span,
     pub name_span: Span,
 }
@@ -94,6 +96,8 @@ pub struct Transition {
     pub target: Option<StateId>,
     pub name: Option<Arc<str>>,
     pub trigger: Trigger,
+    /// Its `(break)`.
+    pub breakpoint: Option<Span>,
     pub span: Span,
 }
 

@@ -259,6 +259,7 @@ impl<'t> Resolver<'t> {
             machines: Vec::new(),
             outgoing: Vec::new(),
             exits: Vec::new(),
+            breakpoint: None,
             span: state.span,
             name_span: state.name.span,
         });

@@ -109,7 +109,7 @@ impl Engine {
 
     /// Has `elapsed()` count from when a machine's active state was entered.
     #[inline]
-    fn count_from_entry(&mut self, machine: Option<MachineId>) {
+    pub(super) fn count_from_entry(&mut self, machine: Option<MachineId>) {
         let entered = machine.and_then(|machine| self.running[machine.index()].as_ref()).map(|running| running.entered);
         self.store.lua.since(entered.unwrap_or_default().0);
     }
@@ -134,7 +134,7 @@ impl Engine {
     }
 
     #[inline]
-    fn note_logs(&mut self) {
+    pub(super) fn note_logs(&mut self) {
         if self.store.lua.has_logs() {
             self.take_logs();
         }
@@ -252,6 +252,7 @@ impl Engine {
     pub(super) fn fault(&mut self, code: Code, span: Span, message: String, help: Option<String>, state: Arc<str>) {
         let happening = Happening { code, span, message, help, state };
         if let Some(fault) = self.faults.happened(self.now, self.program.source(span), happening) {
+            self.meet_fault(code, span, &fault);
             self.rare(What::Error(fault));
         }
     }

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use serde_json::Value;
 
+use super::breakpoints::Breakpoints;
 use super::command::{OnEdit, OnError, Saves};
 use super::faults::Faults;
 use super::note::Note;
@@ -71,6 +72,7 @@ pub struct Engine {
     pub(super) notes: Vec<Note>,
     pub(super) faults: Faults,
     pub(super) changes: super::changes::Changes,
+    pub(super) breakpoints: Breakpoints,
 }
 
 /// A machine that runs: where it is and what it has spawned there.
@@ -110,6 +112,7 @@ impl Engine {
             notes: Vec::new(),
             faults: Faults::default(),
             changes: super::changes::Changes::default(),
+            breakpoints: Breakpoints::default(),
         }
     }
 
@@ -143,7 +146,9 @@ impl Engine {
         for index in 0..self.tops.len() {
             self.step_machine(&plan, self.tops[index]);
         }
+        self.test_conditions();
         self.finish();
+        self.pause_if_met();
     }
 
     /// What robots said; blocks see it from now on.
@@ -198,6 +203,7 @@ impl Engine {
     /// Hands over what happened since the last call, in order.
     pub fn drain(&mut self, mut sink: impl FnMut(Record)) {
         let (step, t) = (self.step, self.now);
+        self.breakpoints.paused = false;
         for note in self.notes.drain(..) {
             sink(Record { step, t, what: note.spell_out(&self.program) });
         }
@@ -205,6 +211,7 @@ impl Engine {
 
     /// Forgets what happened since the last `drain`: for those who only want the machines to run.
     pub fn discard_records(&mut self) {
+        self.breakpoints.paused = false;
         self.notes.clear();
     }
 }

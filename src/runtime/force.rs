@@ -38,6 +38,20 @@ impl Engine {
                 self.arrive_on_way(machine, state, &then);
             }
         }
+        self.forget_exits(machine);
+    }
+
+    /// An `exit` that was found to hold right after entry counts no more where its machine was moved since.
+    fn forget_exits(&mut self, moved: MachineId) {
+        for index in 0..self.running.len() {
+            let decided = self.running[index].as_ref().and_then(|running| running.decided);
+            let leaves_from = decided.and_then(|fired| fired.via).map(|state| self.program[state].machine);
+            if leaves_from.is_some_and(|machine| machine == moved || !self.runs(machine))
+                && let Some(running) = &mut self.running[index]
+            {
+                running.decided = None;
+            }
+        }
     }
 
     /// Up from the wanted state to the nearest machine that runs; with none, the machine itself is spawned at top level.
@@ -62,6 +76,9 @@ impl Engine {
     /// Enters a state; what its onentry spawns on the way starts in the state on the way.
     fn enter_on_way(&mut self, plan: &Plan, machine: MachineId, state: StateId, then: &[(MachineId, StateId)]) {
         self.arrive(machine, state);
+        if self.breakpoints.are_armed {
+            self.meet_state(state);
+        }
         let next = then.first().copied();
         for &item in plan.onentry(state) {
             match item {

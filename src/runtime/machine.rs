@@ -115,6 +115,9 @@ impl Engine {
 
     fn take(&mut self, plan: &Plan, machine: MachineId, from: StateId, fired: Fired) {
         self.note(Note::Transition { transition: fired.transition, from, via: fired.via });
+        if self.breakpoints.are_armed {
+            self.meet_transition(fired.transition, fired.target);
+        }
         self.leave(plan, machine);
         self.enter(plan, machine, fired.target);
     }
@@ -161,6 +164,9 @@ impl Engine {
 
     pub(super) fn enter(&mut self, plan: &Plan, machine: MachineId, state: StateId) {
         self.arrive(machine, state);
+        if self.breakpoints.are_armed {
+            self.meet_state(state);
+        }
         for &item in plan.onentry(state) {
             match item {
                 EntryItem::Actions(actions) => self.run_all(plan, actions),

@@ -2,13 +2,16 @@
 //! Never looks at the clock, the disk, the terminal or a socket.
 
 mod blocks;
+mod breakpoints;
 mod changes;
 pub mod command;
+mod conditions;
 pub mod engine;
 mod faults;
 pub mod findings;
 mod force;
 mod machine;
+mod met;
 mod note;
 mod obey;
 mod patch;

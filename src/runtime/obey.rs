@@ -29,17 +29,17 @@ impl Engine {
         }
         let result = self.obey(command);
         if let Err(Refused(message)) = &result {
-            let log = Log {
-                level: Level::Error,
-                message: message.clone(),
-                state: Arc::default(),
-                file: Arc::default(),
-                line: 0,
-            };
-            self.rare(What::Log(log));
+            self.remark(Level::Error, message.clone());
         }
         self.finish();
+        self.pause_if_met();
         result
+    }
+
+    /// Something to be told that no block wrote.
+    pub(super) fn remark(&mut self, level: Level, message: String) {
+        let log = Log { level, message, state: Arc::default(), file: Arc::default(), line: 0 };
+        self.rare(What::Log(log));
     }
 
     fn obey(&mut self, command: Command) -> Result<(), Refused> {
@@ -52,28 +52,25 @@ impl Engine {
             Command::Saves { mode } => self.saves = mode,
             Command::OnError { mode } => self.on_error = mode,
             Command::Reject { findings } => self.rare(What::Reject { findings }),
-            Command::Pause => self.pause("asked for"),
-            Command::Runstop => self.pause("runstop"),
+            Command::Pause => self.pause("asked for", None),
+            Command::Runstop => self.pause("runstop", None),
             Command::Resume => self.resume(),
             Command::Restart => self.restart("asked for"),
             Command::TransitionTo { state } => self.force(self.state_called(&state)?, Forced::Transition),
             Command::JumpTo { state } => self.force(self.state_called(&state)?, Forced::Jump),
             Command::Set { var, value } => self.set(&var, &value)?,
-            Command::Break { .. }
-            | Command::Step
-            | Command::Rate { .. }
-            | Command::PutAtStart { .. }
-            | Command::FileChanged { .. } => {}
+            Command::Break { at, mode } => self.set_breakpoint(&at, mode)?,
+            Command::Step | Command::Rate { .. } | Command::PutAtStart { .. } | Command::FileChanged { .. } => {}
         }
         Ok(())
     }
 
-    fn pause(&mut self, reason: &str) {
+    pub(super) fn pause(&mut self, reason: &str, at: Option<Arc<str>>) {
         if self.paused {
             return;
         }
         self.paused = true;
-        self.rare(What::Pause { reason: reason.to_string(), at: None });
+        self.rare(What::Pause { reason: reason.to_string(), at });
         if let Some(block) = self.program.on_pause {
             self.run(block);
         }
@@ -121,7 +118,7 @@ impl Engine {
         }
     }
 
-    fn state_called(&self, path: &str) -> Result<StateId, Refused> {
+    pub(super) fn state_called(&self, path: &str) -> Result<StateId, Refused> {
         let known = self.program.states.iter().map(|state| &*state.path);
         self.program.state(path).ok_or_else(|| refuse("state", path, known))
     }
@@ -154,7 +151,7 @@ impl Engine {
     }
 }
 
-fn refuse<'a>(what: &str, path: &str, known: impl Iterator<Item = &'a str>) -> Refused {
+pub(super) fn refuse<'a>(what: &str, path: &str, known: impl Iterator<Item = &'a str>) -> Refused {
     let near = nearest(path, known).map(|near| format!("; did you mean `{near}`?")).unwrap_or_default();
     Refused(format!("there is no {what} `{path}`{near}"))
 }

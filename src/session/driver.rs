@@ -19,7 +19,7 @@ pub struct Driver {
     robots: Vec<Robot>,
     /// Said by a test instead of a robot, for the next step.
     injected: Vec<Input>,
-    /// What an edit or a forced state sent while paused: it leaves with the next step.
+    /// What an edit or a forced state sent while paused, or the step that a breakpoint ended: it leaves with the next step.
     held: Vec<(Arc<str>, Arc<str>, Value)>,
     /// A robot's file was saved with mistakes: it goes by what it read before.
     world_is_broken: bool,
@@ -233,9 +233,12 @@ impl Driver {
 
     fn hand_over(&mut self, delivery: Delivery, sink: Sink) {
         let Driver { engine, robots, held, .. } = self;
+        let mut timing = if engine.has_paused() { Delivery::Held } else { delivery };
         engine.drain(|record| {
             match &record.what {
-                What::Output { bridge, name, value } => match delivery {
+                // What pausing itself sends, to bring a robot to rest, is not to wait.
+                What::Pause { .. } => timing = delivery,
+                What::Output { bridge, name, value } => match timing {
                     Delivery::Now => send(robots, bridge, name, value),
                     Delivery::Held => held.push((bridge.clone(), name.clone(), value.clone())),
                 },

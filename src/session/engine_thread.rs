@@ -291,7 +291,7 @@ impl<'n, N: Fn(News)> Loop<'n, N> {
                 Some(rate) => self.pace.set_rate(rate, real),
                 None => return,
             },
-            Command::Resume => {
+            Command::Resume if self.driver.engine().is_paused() => {
                 self.pace.resume(real);
                 self.status = Status::new();
             }

@@ -57,7 +57,7 @@ impl Run {
             match event {
                 Event::News(News::Records(records)) => {
                     self.take(&records);
-                    if self.outcome.refused || self.nobody_reads() {
+                    if self.outcome.refused || self.outcome.paused || self.nobody_reads() {
                         return None;
                     }
                 }
@@ -115,6 +115,8 @@ struct Outcome {
     errors: bool,
     /// The first text isn't a program.
     refused: bool,
+    /// At a breakpoint or because of an error: there is nobody to let it go on.
+    paused: bool,
 }
 
 impl Outcome {
@@ -130,6 +132,10 @@ impl Outcome {
                 self.errors = true;
                 let place = format!("{}:{}:{}", fault.file, fault.line, fault.column);
                 say(&with_help(format!("{place}: error: {}", fault.message), fault.help.as_deref()));
+            }
+            What::Pause { reason, .. } if !self.paused => {
+                (self.paused, self.errors) = (true, true);
+                say(&format!("paused: {reason}; nobody can let it go on without a screen, so the run ends here"));
             }
             What::Log(log) if log.level >= Level::Info => say(&format!("{}: {}", level(log.level), log.message)),
             _ => {}

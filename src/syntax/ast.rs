@@ -102,6 +102,7 @@ pub enum StateItem {
     OnEntry(Entry),
     Running(Block),
     OnExit(Block),
+    Break(Span),
     Machine(Machine),
 }
 
@@ -120,7 +121,8 @@ pub struct Spawn {
     pub state: Name,
 }
 
-/// `(on T SRC -> DST name?)`, `(eps SRC -> DST name?)`, `(ontime MS SRC -> DST name?)`, `(exit T SRC -> DST name?)`
+/// `(on T SRC -> DST name?)`, `(eps SRC -> DST name?)`, `(ontime MS SRC -> DST name?)`, `(exit T SRC -> DST name?)`,
+/// each with a `(break)` at its end where the program is to pause
 #[derive(Clone, Debug, PartialEq)]
 pub struct Transition {
     pub span: Span,
@@ -128,6 +130,8 @@ pub struct Transition {
     pub sources: Sources,
     pub target: Name,
     pub name: Option<Name>,
+    /// More than one is a mistake, but not of how it is written.
+    pub breaks: Vec<Span>,
 }
 
 #[derive(Clone, Debug, PartialEq)]

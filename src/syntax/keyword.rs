@@ -9,7 +9,7 @@ pub enum Place {
     Machine,
     State,
     OnEntry,
-    /// Where only a list of names can stand: between a transition's keyword and its arrow.
+    /// Where a list of names can stand, before a transition's arrow, or a `break`, at its end.
     Transition,
     /// Inside a form that holds no other.
     Nowhere,
@@ -79,6 +79,7 @@ keywords! {
     Onentry "onentry", [State], "(onentry [action]) or (onentry (spawn MACHINE STATE))", OnEntry;
     Running "running", [State], "(running [action])", Nowhere;
     Onexit "onexit", [State], "(onexit [action])", Nowhere;
+    Break "break", [State, Transition], "(break)", Nowhere;
     Onpause "onpause", [Top], "(onpause [action])", Nowhere;
     Onresume "onresume", [Top], "(onresume [action])", Nowhere;
 }
@@ -103,6 +104,7 @@ impl Keyword {
             Keyword::Onentry => "an `onentry`",
             Keyword::Running => "a `running`",
             Keyword::Onexit => "an `onexit`",
+            Keyword::Break => "a `break`",
             Keyword::Onpause => "an `onpause`",
             Keyword::Onresume => "an `onresume`",
         }

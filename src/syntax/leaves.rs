@@ -9,6 +9,7 @@ use super::keyword::Keyword;
 use super::names::shortened;
 use super::pieces::PieceKind;
 use super::reader::Node;
+use super::source::Span;
 
 pub fn bridge(form: &mut Form) -> Option<Bridge> {
     let name = form.lua_name("the bridge's name")?;
@@ -123,6 +124,17 @@ pub fn action(form: &mut Form) -> Option<Block> {
     let block = form.block("the action")?;
     one_action(form);
     Some(block)
+}
+
+/// `(break)`: its place.
+pub fn breakpoint(form: &mut Form) -> Option<Span> {
+    if let Some(node) = form.rest.first().filter(|node| node.is(PieceKind::Block)) {
+        let message = "a `break` takes no condition: it pauses whenever it is reached";
+        let error = form.error(node.span(form.text.file), message);
+        return form.fail(error.help("write `(break)`; to pause on a condition, set it from the screen or in a test"));
+    }
+    form.finish();
+    Some(form.span())
 }
 
 /// A second block in a form that takes one.

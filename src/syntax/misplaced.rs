@@ -25,6 +25,9 @@ fn belongs(keyword: Keyword, place: Place) -> String {
         (Keyword::On | Keyword::Eps | Keyword::Ontime | Keyword::Exit, Place::State) => {
             "it belongs in the machine, beside the state".to_string()
         }
+        (Keyword::Break, _) => {
+            "it belongs in a state, or at the end of a transition: `(on EVENT SOURCE -> TARGET (break))`".to_string()
+        }
         _ => format!("it belongs {}", places.join(" or ")),
     }
 }

@@ -6,7 +6,7 @@ use super::diagnostic::{Code, Diagnostic};
 use super::findings::Findings;
 use super::form::{Form, Text};
 use super::keyword::{Keyword, Place};
-use super::leaves::{action, bridge, event, export, import, one_action, spawn, var};
+use super::leaves::{action, breakpoint, bridge, event, export, import, one_action, spawn, var};
 use super::misplaced::{bad_first_node, misplaced, outside, unknown};
 use super::pieces::{PieceKind, control_characters};
 use super::reader::{Close, Group, Node, read};
@@ -179,6 +179,7 @@ impl<'a> Parser<'a> {
             Keyword::Onentry => self.entry(form).map(StateItem::OnEntry),
             Keyword::Running => action(form).map(StateItem::Running),
             Keyword::Onexit => action(form).map(StateItem::OnExit),
+            Keyword::Break => breakpoint(form).map(StateItem::Break),
             Keyword::Machine => self.machine(form).map(StateItem::Machine),
             _ => None,
         }

@@ -4,9 +4,11 @@ use super::ast::{Name, Sources, Timeout, Transition, TransitionKind, Trigger};
 use super::diagnostic::{Code, Diagnostic};
 use super::form::Form;
 use super::keyword::Keyword;
+use super::leaves::breakpoint;
 use super::names::shortened;
 use super::pieces::PieceKind;
 use super::reader::{Group, Node};
+use super::source::Span;
 
 /// Just over 31 years; what is longer is a mistake.
 pub const MAX_TIMEOUT_MS: f64 = 1e12;
@@ -31,8 +33,34 @@ pub fn transition(form: &mut Form) -> Option<Transition> {
     let sources = source(form, sources)?;
     let target = form.name("a target state")?;
     let name = name(form);
+    let breaks = breaks(form);
+    if form.rest.first().is_some_and(|node| !breaks.is_empty() && node.is(PieceKind::Word)) {
+        let diagnostic = form.error(form.text.point(&form.rest[0]), "a transition's name comes before its `(break)`");
+        form.fail::<()>(diagnostic.help(format!("write `{} (break)`", form.text.of(&form.rest[0]))));
+    }
     form.finish();
-    Some(Transition { span: form.span(), kind, sources, target, name })
+    Some(Transition { span: form.span(), kind, sources, target, name, breaks })
+}
+
+/// Those at the end of a transition.
+fn breaks(form: &mut Form) -> Vec<Span> {
+    let mut breaks = Vec::new();
+    while let Some(group) = form.rest.first().and_then(as_break) {
+        form.next();
+        let mut inner = Form::new(form.text, group, Keyword::Break);
+        breaks.extend(breakpoint(&mut inner));
+        if let Some(fault) = inner.fault {
+            form.fail::<()>(fault);
+        }
+    }
+    breaks
+}
+
+fn as_break(node: &Node) -> Option<&Group> {
+    match node {
+        Node::Group(group) if group.keyword == Some(Keyword::Break) => Some(group),
+        _ => None,
+    }
 }
 
 fn name(form: &mut Form) -> Option<Name> {
@@ -40,7 +68,11 @@ fn name(form: &mut Form) -> Option<Name> {
         let diagnostic = form.error(arrow.span(form.text.file), "a transition has one target only");
         return form.fail(diagnostic.help("write a transition of its own for the next step"));
     }
-    if form.rest.is_empty() { None } else { form.name("the transition's name") }
+    match form.rest.first() {
+        None => None,
+        Some(node) if as_break(node).is_some() => None,
+        Some(_) => form.name("the transition's name"),
+    }
 }
 
 /// Takes everything up to the arrow, and the arrow.

@@ -22,7 +22,7 @@ macro_rules! behaviors {
     };
 }
 
-behaviors!(concurrent escapement exit line_follower live_scenario resettable_timer stopwatch);
+behaviors!(concurrent escapement exit forcing line_follower live_scenario resettable_timer stopwatch);
 
 #[test]
 fn no_behavior_test_is_left_out() {
@@ -54,6 +54,11 @@ fn check(name: &str) {
 #[test]
 fn each_function_works() {
     check("functions");
+}
+
+#[test]
+fn breakpoints_work() {
+    check("breaks");
 }
 
 #[test]

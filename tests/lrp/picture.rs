@@ -1,4 +1,5 @@
-//! Whether the screen's picture, folded from records, is the engine's own: active states, values, visits, times, mode.
+//! Whether the screen's picture, folded from records, is the engine's own: active states, values, visits, times,
+//! breakpoints, mode.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -44,5 +45,6 @@ pub fn agrees(view: &View, engine: &Engine) -> Result<(), String> {
             return Err(format!("{machine} runs, but {state} that spawned it is not active"));
         }
     }
+    same("breakpoints", format!("{:?}", view.breakpoints), format!("{:?}", engine.breakpoints()))?;
     same("paused", (view.mode != Mode::Running).to_string(), engine.is_paused().to_string())
 }

@@ -201,7 +201,7 @@ impl Machine {
                     let _ = writeln!(text, "({form} {item})");
                 }
             }
-            text.push_str(")\n");
+            text.push_str(if state.breaks { "(break))\n" } else { ")\n" });
         }
         for transition in &self.transitions {
             let _ = writeln!(text, "{transition}");

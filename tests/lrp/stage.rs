@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use lrp::lua::Limits;
 use lrp::model::Edit;
-use lrp::runtime::{Command, Engine, Input, OnEdit, Options, Record, Saves, Time};
+use lrp::runtime::{BreakAt, Breaking, Command, Engine, Input, OnEdit, OnError, Options, Record, Saves, Time};
 use lrp::session::compile::{Compiler, Rejected};
 use lrp::session::driver::Driver;
 use lrp::session::findings;
@@ -234,6 +234,24 @@ pub fn read_event(text: &str) -> Event {
             let value = serde_json::from_str(value).expect("a message in JSON");
             return Event::Input(Input { bridge: bridge.into(), name: name.into(), value });
         }
+        "break" => Command::Break { at: place(rest), mode: Breaking::Set },
+        "clear" => Command::Break { at: place(rest), mode: Breaking::Clear },
+        "on-error" => Command::OnError { mode: if rest == "pause" { OnError::Pause } else { OnError::Continue } },
         _ => panic!("`{what}` is nothing that happens"),
     })
+}
+
+/// `state m/a`, `transition m: on go a -> b`, `condition x > 3`, `condition in m/a/n: x > 3`
+fn place(text: &str) -> BreakAt {
+    let (kind, rest) = split(text);
+    match kind {
+        "state" => BreakAt::State { state: rest.into() },
+        "transition" => BreakAt::Transition { transition: rest.into() },
+        "condition" => {
+            let in_machine = rest.strip_prefix("in ").and_then(|rest| rest.split_once(": "));
+            let (machine, condition) = in_machine.unwrap_or(("", rest));
+            BreakAt::Condition { condition: condition.into(), machine: machine.into() }
+        }
+        _ => panic!("`{text}` is no place for a breakpoint"),
+    }
 }

@@ -7,7 +7,7 @@ use std::sync::Arc;
 use std::time::Duration;
 
 use lrp::runtime::record::{Change, Held, Load, Op};
-use lrp::runtime::{Command, Engine, Input, OnEdit, Record, Saves, What};
+use lrp::runtime::{BreakAt, Breaking, Command, Engine, Input, OnEdit, OnError, Record, Saves, What};
 use lrp::session::compile::Compiler;
 use lrp::syntax::Source;
 use lrp::ui::view::View;
@@ -172,7 +172,7 @@ fn event(choices: &mut Choices, engine: &Engine) -> Event {
     let vars = &engine.program().vars;
     let state = choices.of(states).map(|state| state.path.to_string()).unwrap_or_default();
     let var = choices.of(vars).map(|var| var.path.to_string()).unwrap_or_default();
-    Event::Command(match choices.below(18) {
+    Event::Command(match choices.below(23) {
         0 => Command::Pause,
         1 | 2 => Command::Resume,
         3 => Command::TransitionTo { state },
@@ -187,6 +187,17 @@ fn event(choices: &mut Choices, engine: &Engine) -> Event {
         13 => Command::Saves { mode: Saves::Apply },
         14 | 15 => Command::ApplyHeld,
         16 => Command::DropHeld,
+        17 => Command::Break { at: BreakAt::State { state: state.into() }, mode: Breaking::Set },
+        18 => Command::Break { at: BreakAt::State { state: state.into() }, mode: Breaking::Clear },
+        19 => {
+            let at = BreakAt::Condition { condition: "now() % 300 == 0".into(), machine: "".into() };
+            Command::Break { at, mode: Breaking::Set }
+        }
+        20 => match engine.breakpoints().first() {
+            Some(first) => Command::Break { at: first.at.clone(), mode: Breaking::Clear },
+            None => Command::OnError { mode: OnError::Continue },
+        },
+        21 => Command::OnError { mode: OnError::Pause },
         _ => {
             let value = json!({ "data": choices.below(4) });
             return Event::Input(Input { bridge: "robot".into(), name: "light".into(), value });

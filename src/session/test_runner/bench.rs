@@ -12,7 +12,7 @@ use super::message::{self, Direction, hint};
 use super::options::Options;
 use super::readable;
 use crate::model::{Description, Edit, Program, Robot};
-use crate::runtime::record::{Fault, Finding, Held};
+use crate::runtime::record::{Breakpoint, Fault, Finding, Held};
 use crate::runtime::{self, Command, Input, Record, Time, What};
 use crate::session::compile::{Compiler, Rejected};
 use crate::session::driver::Driver;
@@ -78,8 +78,9 @@ impl Bench {
         }
         let robots = if options.bridge.is_some() { Robots::AsProgrammed } else { Robots::Fake };
         let workshop = Workshop { folder, seed: options.seed, robots };
-        let &Options { seed, on_edit, .. } = options;
-        let mut driver = Driver::new(runtime::Options { seed, on_edit, ..runtime::Options::default() }, workshop);
+        let &Options { seed, on_edit, on_error, .. } = options;
+        let mut driver =
+            Driver::new(runtime::Options { seed, on_edit, on_error, ..runtime::Options::default() }, workshop);
         driver.engine_mut().library(library);
         let mut pace = Pace::new(options.rate, std::time::Duration::ZERO);
         let due = pace.make();
@@ -136,21 +137,28 @@ impl Bench {
 
     /// Every step up to this much program time later; none while paused, when program time stands still.
     pub fn advance(&mut self, time: Time) -> Result<(), Complaint> {
-        if self.driver.engine().is_paused() {
-            return Ok(());
-        }
         let until = self.clock + time;
-        while self.due <= until {
+        while self.due <= until && !self.is_paused() {
             self.one_step()?;
         }
-        self.clock = until;
+        if !self.is_paused() {
+            self.clock = until;
+        }
         Ok(())
+    }
+
+    pub fn is_paused(&self) -> bool {
+        self.driver.engine().is_paused()
+    }
+
+    pub fn breakpoints(&self) -> &[Breakpoint] {
+        self.driver.engine().breakpoints()
     }
 
     /// So many steps, also while paused.
     pub fn steps(&mut self, count: u64) -> Result<(), Complaint> {
         for _ in 0..count {
-            if self.driver.engine().is_paused() {
+            if self.is_paused() {
                 self.command(Command::Step)?;
             }
             self.one_step()?;

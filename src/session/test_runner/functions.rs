@@ -12,7 +12,7 @@ use super::message::hint;
 use super::readable::sent;
 use super::value::{source, to_json, to_lua};
 use crate::runtime::What;
-use crate::runtime::{Command, Saves, Time};
+use crate::runtime::{BreakAt, Breaking, Command, Saves, Time};
 
 /// The table a test calls `t`.
 pub fn table(lua: &Lua, api: &Rc<Api>) -> mlua::Result<Table> {
@@ -99,13 +99,34 @@ impl Functions<'_> {
         self.add("set(path, value)", |_, api, (var, value): (String, Value)| {
             Ok(api.command(Command::Set { var, value: source(&value)? })?)
         })?;
+        self.breaking("break_at(state, transition or {condition =, machine =})", Breaking::Set)?;
+        self.breaking("clear_break(state, transition or {condition =, machine =})", Breaking::Clear)?;
         self.add("reply(call, value)", |_, _, (call, _): (String, Value)| -> mlua::Result<()> {
             let why = "no robot has calls yet; they come with later bridges";
             Err(Complaint::new(format!("`{call}` waits for no reply: {why}")).into())
         })
     }
 
+    fn breaking(&self, usage: &'static str, mode: Breaking) -> mlua::Result<()> {
+        self.add(usage, move |_, api, at: Value| {
+            let at = match at {
+                Value::String(name) => place(&name.to_string_lossy()),
+                Value::Table(table) => condition(&table)?,
+                other => {
+                    let kind = other.type_name();
+                    return Err(Complaint::new(format!("it is called `t:{usage}`, not with a {kind}")).into());
+                }
+            };
+            Ok(api.command(Command::Break { at, mode })?)
+        })
+    }
+
     fn asking(&self) -> mlua::Result<()> {
+        self.add("is_paused()", |_, api, ()| Ok(api.with(|bench| Ok(bench.is_paused()))?))?;
+        self.add("breakpoints()", |lua, api, ()| {
+            let all = api.with(|bench| Ok(bench.breakpoints().to_vec()))?;
+            all.iter().map(|breakpoint| to_lua(lua, &json!(breakpoint))).collect::<mlua::Result<Vec<Value>>>()
+        })?;
         self.add("get(path)", |lua, api, path: String| {
             let value = api.with(|bench| bench.get(&path))?;
             value.map_or(Ok(Value::Nil), |value| to_lua(lua, &value))
@@ -161,6 +182,29 @@ fn refuse_others(lua: &Lua, table: &Table) -> mlua::Result<()> {
     meta.raw_set("__index", unknown)?;
     table.set_metatable(Some(meta))
 }
+
+/// A transition as lists of changes name it, or else a state's path.
+fn place(name: &str) -> BreakAt {
+    match name.contains("->") {
+        true => BreakAt::Transition { transition: name.into() },
+        false => BreakAt::State { state: name.into() },
+    }
+}
+
+fn condition(table: &Table) -> mlua::Result<BreakAt> {
+    for key in table.pairs::<Value, Value>().flatten().map(|(key, _)| key) {
+        let key = key.to_string()?;
+        if !CONDITION.contains(&&*key) {
+            let hint = hint(&key, CONDITION.into_iter());
+            return Err(Complaint::new(format!("a breakpoint has no `{key}`; {hint}")).into());
+        }
+    }
+    let field = |key: &str| table.get::<Option<String>>(key);
+    let condition = field("condition")?.ok_or_else(|| Complaint::new("the `condition` to break on is missing"))?;
+    Ok(BreakAt::Condition { condition: condition.into(), machine: field("machine")?.unwrap_or_default().into() })
+}
+
+const CONDITION: [&str; 2] = ["condition", "machine"];
 
 fn edit_by(api: &Api, change: &Function) -> mlua::Result<()> {
     let old = api.with(|bench| Ok(bench.text().to_string()))?;

@@ -4,7 +4,7 @@ use mlua::Table;
 
 use super::failure::Complaint;
 use super::message::hint;
-use crate::runtime::OnEdit;
+use crate::runtime::{OnEdit, OnError};
 use crate::session::pace::Rate;
 
 #[derive(Clone, Debug)]
@@ -16,14 +16,21 @@ pub struct Options {
     pub rate: Rate,
     pub seed: u64,
     pub on_edit: OnEdit,
+    pub on_error: OnError,
 }
 
-const KEYS: [&str; 5] = ["bridge", "world", "rate", "seed", "on_edit"];
+const KEYS: [&str; 6] = ["bridge", "world", "rate", "seed", "on_edit", "on_error"];
 
 impl Options {
     pub fn read(table: Option<&Table>) -> Result<Options, Complaint> {
-        let mut options =
-            Options { bridge: None, world: None, rate: Rate::default(), seed: 1, on_edit: OnEdit::default() };
+        let mut options = Options {
+            bridge: None,
+            world: None,
+            rate: Rate::default(),
+            seed: 1,
+            on_edit: OnEdit::default(),
+            on_error: OnError::default(),
+        };
         for (key, value) in table.into_iter().flat_map(|table| table.pairs::<mlua::Value, mlua::Value>()).flatten() {
             let key = key.as_string().map_or_else(|| key.type_name().to_string(), |key| key.to_string_lossy());
             options.take(&key, &value)?;
@@ -56,6 +63,11 @@ impl Options {
                     _ => return Err(Complaint::new("`on_edit` is \"restart\" or \"keep\"")),
                 };
             }
+            "on_error" => match &*text(key, value)? {
+                "continue" => self.on_error = OnError::Continue,
+                "pause" => self.on_error = OnError::Pause,
+                _ => return Err(Complaint::new("`on_error` is \"continue\" or \"pause\"")),
+            },
             key => return Err(Complaint::new(format!("there is no option `{key}`; {}", hint(key, KEYS.into_iter())))),
         }
         Ok(())

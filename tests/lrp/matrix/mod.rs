@@ -85,5 +85,6 @@ fn the_whole_matrix() {
     if let Some((cell, wrong)) = failed.first() {
         panic!("{} of {} cells fail:\n{report}\nthe first: {cell}: {wrong}", failed.len(), cells.len());
     }
-    assert_eq!((cells.len(), senseless.len()), (0, 0));
+    // Each in both modes; none may vanish unseen.
+    assert_eq!((cells.len(), senseless.len()), (1229, 1291));
 }

@@ -36,7 +36,7 @@ impl Plot {
     fn change_machine(&mut self, machine: &mut Machine, choices: &mut Choices, scope: &[String]) {
         let mut scope = scope.to_vec();
         scope.extend(machine.vars.iter().map(|var| var.name.clone()));
-        match choices.below(15) {
+        match choices.below(16) {
             0 => machine.vars.push(self.var(choices, &scope)),
             1 => drop(remove(&mut machine.vars, choices)),
             2 => machine.events.push(Var { name: self.name("e"), init: condition(choices, &scope) }),
@@ -49,6 +49,7 @@ impl Plot {
             11 => reorder(&mut machine.states, choices),
             12 => reorder(&mut machine.transitions, choices),
             13 => self.move_out(machine, choices),
+            15 => break_at(&mut machine.transitions, choices),
             14 if !machine.events.is_empty() => {
                 let index = choices.below(machine.events.len());
                 machine.events[index].init = condition(choices, &scope);
@@ -101,5 +102,16 @@ fn remove<T>(list: &mut Vec<T>, choices: &mut Choices) -> Option<T> {
 fn reorder<T>(list: &mut Vec<T>, choices: &mut Choices) {
     if let Some(one) = remove(list, choices) {
         list.insert(choices.below(list.len() + 1), one);
+    }
+}
+
+/// The program pauses when one of these is taken, or no longer.
+fn break_at(transitions: &mut [String], choices: &mut Choices) {
+    let index = choices.below(transitions.len());
+    if let Some(transition) = transitions.get_mut(index) {
+        *transition = match transition.strip_suffix(" (break))") {
+            Some(without) => format!("{without})"),
+            None => format!("{} (break))", &transition[..transition.len() - 1]),
+        };
     }
 }

@@ -73,6 +73,7 @@ impl Printer<'_> {
                 }
                 StateItem::Running(b) => self.line(b.span, format!("running {}", block(b))),
                 StateItem::OnExit(b) => self.line(b.span, format!("onexit {}", block(b))),
+                StateItem::Break(span) => self.line(*span, "break".into()),
                 StateItem::Machine(machine) => self.machine(machine),
             }
         }
@@ -89,6 +90,11 @@ impl Printer<'_> {
         let name = transition.name.as_ref().map_or(String::new(), |name| format!(" named {}", name.text));
         let (from, to) = (sources(&transition.sources), &transition.target.text);
         self.line(transition.span, format!("{kind}: {from} -> {to}{name}"));
+        self.depth += 1;
+        for &span in &transition.breaks {
+            self.line(span, "break".into());
+        }
+        self.depth -= 1;
     }
 }
 

@@ -72,6 +72,7 @@ impl Walk {
                 StateItem::OnEntry(Entry::Action(block)) | StateItem::Running(block) | StateItem::OnExit(block) => {
                     self.all(state.span, &[block.span]);
                 }
+                StateItem::Break(span) => self.all(state.span, &[*span]),
                 StateItem::Machine(machine) => self.machine(state.span, machine),
             }
         }
@@ -81,6 +82,7 @@ impl Walk {
         let span = transition.span;
         self.all(outer, &[span]);
         self.all(span, &[transition.target.span]);
+        self.all(span, &transition.breaks);
         self.all(span, &transition.name.iter().map(|name| name.span).collect::<Vec<_>>());
         match &transition.kind {
             TransitionKind::On(Trigger::Event(name)) | TransitionKind::Exit(Trigger::Event(name)) => {
