@@ -5,6 +5,7 @@ use std::time::Duration;
 
 use clap::{ArgAction, Parser, Subcommand, ValueEnum};
 
+use super::explain::LIST;
 use crate::lua::{Access, Limits};
 use crate::model::Robot;
 use crate::runtime::{OnEdit, OnError, Options, Saves, Time};
@@ -43,8 +44,11 @@ pub enum Task {
     /// Report what is wrong with programs; exit code 1 if any has errors
     Check {
         /// The programs
-        #[arg(required = true, value_name = "FILE")]
+        #[arg(required_unless_present = "explain", value_name = "FILE")]
         files: Vec<PathBuf>,
+        /// Tell what a code means, with examples; without CODE, list all codes
+        #[arg(long, value_name = "CODE", num_args = 0..=1, default_missing_value = LIST, conflicts_with = "files")]
+        explain: Option<String>,
         /// For people or for tools
         #[arg(long, value_enum, default_value_t = Format::Text)]
         format: Format,

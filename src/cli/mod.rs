@@ -2,6 +2,7 @@
 
 mod args;
 mod check;
+mod explain;
 mod graph;
 mod new;
 mod output;
@@ -22,7 +23,8 @@ pub fn main() -> ExitCode {
     match args.task() {
         Task::Live(live) => crate::ui::live::run(live.setup(), live.run.trace),
         Task::Run(run) => crate::session::headless::run(run.setup(), run.trace),
-        Task::Check { files, format } => check::check(&files, format),
+        Task::Check { explain: Some(code), .. } => explain::explain(&code),
+        Task::Check { files, format, .. } => check::check(&files, format),
         Task::Graph(graph) => graph::print(&graph),
         Task::New { name } => new::create(&name),
         Task::Test { paths } => crate::session::test_runner::run(&paths),

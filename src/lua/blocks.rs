@@ -17,7 +17,7 @@ impl Lua {
 
     fn compile_unlimited(&mut self, code: &str, scope: &[(&str, Cell)]) -> Result<Block, SyntaxError> {
         // SAFETY: nothing runs, and there is no memory limit.
-        let (form, uses) = unsafe { source::analyse(self.stack.state(), code)? };
+        let (form, bytecode::Read { uses, .. }) = unsafe { source::analyse(self.stack.state(), code)? };
         let bound = self.bind(&uses, scope)?;
         let names: Vec<_> = bound.iter().map(|&(name, _)| name).collect();
         self.chunks += 1;
@@ -54,8 +54,11 @@ impl Lua {
                 let message = format!("more than {} variables in one block: move some into a table", source::NAMES);
                 return Err(SyntaxError { message, line: found.line, token: Some(name.to_owned()) });
             }
-            if let Slot::Variable { name: known, .. } = &mut self.slots[cell.0 as usize] {
-                known.get_or_insert_with(|| name.into());
+            // The newest, as a variable can be renamed.
+            if let Slot::Variable { name: known, .. } = &mut self.slots[cell.0 as usize]
+                && known.as_deref() != Some(name)
+            {
+                *known = Some(name.into());
             }
         }
         Ok(bound)

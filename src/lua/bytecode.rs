@@ -2,6 +2,9 @@
 
 use std::rc::Rc;
 
+use super::instruction::*;
+use super::registers::{self, FieldUse, Gives};
+
 /// A free name, where it is used, and how.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Use {
@@ -16,55 +19,31 @@ pub(super) enum Kind {
     Write,
 }
 
-const LOADK: u32 = 3;
-const LOADKX: u32 = 4;
-const GETUPVAL: u32 = 9;
-const GETTABUP: u32 = 11;
-const GETTABLE: u32 = 12;
-const SETTABUP: u32 = 15;
-const SETTABLE: u32 = 16;
-
 /// Signature, version, format, check bytes, three sizes, an integer, a number, the count of upvalues.
 const HEADER: usize = 4 + 1 + 1 + 6 + 3 + 8 + 8 + 1;
 /// In place of a line's difference: the line is in the other list.
 const ABSOLUTE: i8 = -0x80;
 
-/// The uses of free names in a function as `lua_dump` writes it, unstripped; nothing if the bytes aren't such.
-pub(super) fn uses(dump: &[u8]) -> Option<Vec<Use>> {
+/// What a compiled text says of itself; uses by line.
+#[derive(Debug, Default)]
+pub(super) struct Read {
+    pub uses: Vec<Use>,
+    pub fields: Vec<FieldUse>,
+    pub gives: Gives,
+}
+
+/// Reads a function as `lua_dump` writes it, unstripped; nothing if the bytes aren't such.
+pub(super) fn read(dump: &[u8]) -> Option<Read> {
     let mut reader = Reader { bytes: dump.get(HEADER..)? };
-    let mut uses = Vec::new();
-    reader.function(None, &mut uses)?;
-    uses.sort_by_key(|found| found.line);
-    Some(uses)
+    let mut read = Read::default();
+    reader.function(None, &mut read)?;
+    read.uses.sort_by_key(|found| found.line);
+    read.fields.sort_by_key(|found| found.line);
+    Some(read)
 }
 
 struct Reader<'a> {
     bytes: &'a [u8],
-}
-
-/// One instruction, its fields as Lua names them.
-#[derive(Clone, Copy)]
-struct Instruction(u32);
-
-impl Instruction {
-    fn opcode(self) -> u32 {
-        self.0 & 0x7F
-    }
-    fn a(self) -> usize {
-        (self.0 >> 7 & 0xFF) as usize
-    }
-    fn b(self) -> usize {
-        (self.0 >> 16 & 0xFF) as usize
-    }
-    fn c(self) -> usize {
-        (self.0 >> 24) as usize
-    }
-    fn bx(self) -> usize {
-        (self.0 >> 15) as usize
-    }
-    fn ax(self) -> usize {
-        (self.0 >> 7) as usize
-    }
 }
 
 /// Which of a function's upvalues are the environment.
@@ -99,8 +78,9 @@ impl<'a> Reader<'a> {
         }
     }
 
-    /// A function and those in it; `outer` is that of the function around it.
-    fn function(&mut self, outer: Option<&Environments>, uses: &mut Vec<Use>) -> Option<()> {
+    /// A function and those in it; `outer` is that of the function around it. Gives the registers of that one which this
+    /// one shares.
+    fn function(&mut self, outer: Option<&Environments>, read: &mut Read) -> Option<Vec<usize>> {
         self.string()?;
         let first_line = self.size()?;
         self.size()?;
@@ -109,49 +89,53 @@ impl<'a> Reader<'a> {
         let (words, _) = self.take(count.checked_mul(4)?)?.as_chunks::<4>();
         let code: Vec<_> = words.iter().map(|word| Instruction(u32::from_ne_bytes(*word))).collect();
         let constants = self.constants()?;
-        let environments = self.environments(outer)?;
+        let (environments, taken) = self.upvalues(outer)?;
+        let mut shared = Vec::new();
         for _ in 0..self.size()? {
-            self.function(Some(&environments), uses)?;
+            shared.extend(self.function(Some(&environments), read)?);
         }
         let lines = self.lines(first_line)?;
         self.skip_names()?;
-        let function = Function { code, constants, environments };
-        uses.extend(function.uses().map(|(at, name, kind)| Use {
-            name,
-            line: lines.get(at).copied().unwrap_or(0),
-            kind,
-        }));
-        Some(())
+        let function = Function { code, constants, environments, lines, shared };
+        read.uses.extend(function.uses());
+        let (fields, gives) = registers::follow(&function);
+        read.fields.extend(fields);
+        // The text's own function comes last.
+        read.gives = gives;
+        Some(taken)
     }
 
-    /// The strings among the constants.
-    fn constants(&mut self) -> Option<Vec<Option<&'a [u8]>>> {
+    fn constants(&mut self) -> Option<Vec<Constant<'a>>> {
         let count = self.size()?;
         let mut constants = Vec::new();
         for _ in 0..count {
             constants.push(match self.byte()? {
-                0 | 1 | 17 => None,
-                3 | 19 => self.take(8).map(|_| None)?,
-                4 | 20 => Some(self.string()?),
+                0 | 1 | 17 => Constant::Other,
+                3 => Constant::Number(i64::from_ne_bytes(self.take(8)?.try_into().ok()?) as f64),
+                19 => Constant::Number(f64::from_ne_bytes(self.take(8)?.try_into().ok()?)),
+                4 | 20 => Constant::Text(self.string()?),
                 _ => return None,
             });
         }
         Some(constants)
     }
 
-    /// The text's only upvalue is its environment; an inner function's is, if it takes that of the function around it.
-    fn environments(&mut self, outer: Option<&Environments>) -> Option<Environments> {
+    /// Which upvalues are the environment, and which registers of the function around it are among them. The text's only
+    /// upvalue is its environment; an inner function's is, if it takes that of the function around it.
+    fn upvalues(&mut self, outer: Option<&Environments>) -> Option<(Environments, Vec<usize>)> {
         let count = self.size()?;
         let mut environments = Vec::new();
+        let mut taken = Vec::new();
         for _ in 0..count {
-            let (in_stack, index) = (self.byte()? != 0, self.byte()?);
+            let (in_stack, index) = (self.byte()? != 0, usize::from(self.byte()?));
             self.byte()?;
             environments.push(match outer {
                 None => true,
-                Some(outer) => !in_stack && outer.get(usize::from(index)).copied().unwrap_or(false),
+                Some(outer) => !in_stack && outer.get(index).copied().unwrap_or(false),
             });
+            taken.extend(Some(index).filter(|_| in_stack));
         }
-        Some(environments.into())
+        Some((environments.into(), taken))
     }
 
     /// The line of each instruction.
@@ -187,18 +171,39 @@ impl<'a> Reader<'a> {
     }
 }
 
-struct Function<'a> {
-    code: Vec<Instruction>,
-    constants: Vec<Option<&'a [u8]>>,
+/// What an instruction may refer to by number.
+#[derive(Clone, Copy)]
+pub(super) enum Constant<'a> {
+    Text(&'a [u8]),
+    Number(f64),
+    Other,
+}
+
+pub(super) struct Function<'a> {
+    pub code: Vec<Instruction>,
+    pub constants: Vec<Constant<'a>>,
     environments: Environments,
+    lines: Vec<u32>,
+    /// Registers that functions in it read and write as well.
+    pub shared: Vec<usize>,
 }
 
 impl Function<'_> {
-    fn uses(&self) -> impl Iterator<Item = (usize, String, Kind)> + '_ {
+    pub fn line(&self, at: usize) -> u32 {
+        self.lines.get(at).copied().unwrap_or(0)
+    }
+
+    pub fn text(&self, constant: usize) -> Option<String> {
+        match self.constants.get(constant)? {
+            Constant::Text(text) => Some(String::from_utf8_lossy(text).into_owned()),
+            _ => None,
+        }
+    }
+
+    fn uses(&self) -> impl Iterator<Item = Use> + '_ {
         (0..self.code.len()).filter_map(|at| {
             let (constant, kind) = self.use_at(at)?;
-            let name = self.constants.get(constant).copied().flatten()?;
-            Some((at, String::from_utf8_lossy(name).into_owned(), kind))
+            Some(Use { name: self.text(constant)?, line: self.line(at), kind })
         })
     }
 
@@ -213,7 +218,7 @@ impl Function<'_> {
         }
     }
 
-    fn is_environment(&self, upvalue: usize) -> bool {
+    pub fn is_environment(&self, upvalue: usize) -> bool {
         self.environments.get(upvalue).copied().unwrap_or(false)
     }
 

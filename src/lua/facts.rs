@@ -1,10 +1,12 @@
 //! What can be said of a block without running it. Knows nothing of variables.
 
-use std::sync::LazyLock;
+use std::sync::{Arc, LazyLock};
 
 use serde_json::Value;
 
-use super::bytecode::{Kind, Use};
+use super::bytecode::{self, Kind, Use};
+use super::known::Known;
+use super::registers::{FieldUse, Gives};
 use super::value::Bounds;
 use super::{Access, Failure, Limits, Lua, SyntaxError, source};
 
@@ -17,16 +19,20 @@ pub struct NameUse {
 }
 
 /// The free names of a block, by line: those it reads and those it assigns, functions in it included.
-#[derive(Clone, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Facts {
     pub reads: Vec<NameUse>,
     pub writes: Vec<NameUse>,
+    /// Fields of free names, by line; not all can be told.
+    pub fields: Vec<FieldUse>,
+    pub gives: Gives,
 }
 
 /// Looks at blocks with an interpreter of its own.
 pub struct Checker {
     lua: Lua,
     access: Access,
+    known: Known,
 }
 
 /// Bounds of a configuration.
@@ -41,7 +47,7 @@ impl Default for Checker {
 impl Checker {
     /// For blocks that will have this access.
     pub fn new(access: Access) -> Self {
-        Self { lua: Lua::new(Limits::default(), Access::Sandboxed, 0), access }
+        Self { lua: Lua::new(Limits::default(), Access::Sandboxed, 0), access, known: Known::default() }
     }
 
     /// The names that every block has at hand.
@@ -53,7 +59,33 @@ impl Checker {
         known_names().iter().chain(besides).copied().collect()
     }
 
-    /// The free names of a block.
+    /// Begins with another program: blocks that were in one of the last two are known.
+    pub fn next_program(&mut self) {
+        self.known.next_program();
+    }
+
+    /// What can be said of a block of the program; one that is known isn't looked at again.
+    ///
+    /// # Errors
+    /// As for `check`.
+    pub fn check_block(&mut self, code: &Arc<str>) -> Result<Arc<Facts>, SyntaxError> {
+        if let Some(facts) = self.known.get(code) {
+            return Ok(facts);
+        }
+        let facts = Arc::new(self.check(code)?);
+        self.known.insert(code.clone(), facts.clone());
+        Ok(facts)
+    }
+
+    /// The fields of a library that every block has at hand, sorted; none where that isn't known of a name.
+    pub fn fields(&self, library: &str) -> &'static [&'static str] {
+        match self.access {
+            Access::System if library == "os" => &[],
+            _ => known_fields(library),
+        }
+    }
+
+    /// What can be said of a block.
     ///
     /// # Errors
     /// The text is neither an expression nor statements.
@@ -80,14 +112,15 @@ impl Checker {
 }
 
 impl Lua {
-    /// The free names of a block.
+    /// What can be said of a block.
     ///
     /// # Errors
     /// The text is neither an expression nor statements.
     pub fn facts(&mut self, code: &str) -> Result<Facts, SyntaxError> {
         // SAFETY: nothing runs, and there is no memory limit.
-        let (_, uses) = self.unlimited(|lua| unsafe { source::analyse(lua.stack.state(), code) })?;
-        let mut facts = Facts::default();
+        let (_, read) = self.unlimited(|lua| unsafe { source::analyse(lua.stack.state(), code) })?;
+        let bytecode::Read { uses, fields, gives } = read;
+        let mut facts = Facts { fields, gives, ..Facts::default() };
         for Use { name, line, kind } in uses {
             match kind {
                 Kind::Read => facts.reads.push(NameUse { name, line }),

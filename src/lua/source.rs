@@ -5,7 +5,7 @@ use std::fmt::{self, Display};
 
 use mlua_sys as ffi;
 
-use super::bytecode::{self, Use};
+use super::bytecode::{self, Read};
 use super::desk::chunk_name;
 use super::message;
 
@@ -67,7 +67,7 @@ pub(super) const NAMES: usize = 200;
 ///
 /// # Safety
 /// `state` is a live state that isn't running, with four free slots, and no memory limit.
-pub(super) unsafe fn analyse(state: *mut ffi::lua_State, code: &str) -> Result<(Form, Vec<Use>), SyntaxError> {
+pub(super) unsafe fn analyse(state: *mut ffi::lua_State, code: &str) -> Result<(Form, Read), SyntaxError> {
     let code = &one_line_ends(code);
     unsafe {
         let form = match load_as(state, code, Form::Expression) {
@@ -80,7 +80,7 @@ pub(super) unsafe fn analyse(state: *mut ffi::lua_State, code: &str) -> Result<(
         let mut dump = Vec::new();
         ffi::lua_dump(state, write, (&raw mut dump).cast(), 0);
         ffi::lua_pop(state, 1);
-        Ok((form, bytecode::uses(&dump).unwrap_or_default()))
+        Ok((form, bytecode::read(&dump).unwrap_or_default()))
     }
 }
 

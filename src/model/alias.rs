@@ -58,8 +58,12 @@ fn twin(running: &Program, was: ElementId, program: &Program, matching: &Matchin
 /// An element's text, where the missing name may mean what is gone, the element itself included.
 fn text<'p>(side: Side<'p>, matching: &Matching, element: ElementId, missing: &str) -> Vec<Key<'p>> {
     let mut keys = side.body(matching, element);
+    let mut of_itself = false;
     for key in &mut keys {
+        let after_itself = std::mem::replace(&mut of_itself, *key == Key::Subject(Kind::Machine));
         match *key {
+            // Nothing is known of a state of a machine that isn't known.
+            Key::Called(kind, name) if after_itself => *key = Key::Unknown(kind, name),
             Key::Subject(kind) => *key = Key::Along(kind),
             Key::Unknown(kind, name) if kind == element.kind && name == missing => *key = Key::Along(kind),
             _ => {}

@@ -9,11 +9,12 @@ use crate::syntax::nearest::nearest;
 use crate::syntax::{Code, Diagnostic, Source, Span};
 
 pub fn resolve_blocks(program: &mut Program, checker: &mut Checker) {
+    checker.next_program();
     let at_hand = checker.at_hand();
     let mut found = Vec::new();
     for index in 0..program.blocks.len() {
         let block = &program.blocks[index];
-        let facts = match checker.check(&block.code) {
+        let facts = match checker.check_block(&block.code) {
             Ok(facts) => facts,
             Err(error) => {
                 let span = error_span(program.source(block.span), block, &error, checker);
@@ -22,17 +23,17 @@ pub fn resolve_blocks(program: &mut Program, checker: &mut Checker) {
             }
         };
         let names = Names::of(program);
-        let mut uses = Vec::new();
+        let (mut reads, mut writes) = (Vec::new(), Vec::new());
         let mut missing = Vec::new();
         let mut unknown: Vec<&str> = Vec::new();
-        for (name, access) in facts
-            .reads
-            .iter()
-            .map(|name| (name, Access::Read))
-            .chain(facts.writes.iter().map(|name| (name, Access::Write)))
-        {
+        let read = facts.reads.iter().map(|name| (name, Access::Read));
+        for (name, access) in read.chain(facts.writes.iter().map(|name| (name, Access::Write))) {
+            let known = match access {
+                Access::Read => &mut reads,
+                Access::Write => &mut writes,
+            };
             let var = names.var(block.machine, &name.name);
-            uses.extend(var.filter(|var| !uses.contains(var)));
+            known.extend(var.filter(|var| !known.contains(var)));
             if !program.is_called(var, &name.name) && !unknown.contains(&&*name.name) {
                 unknown.push(&name.name);
                 let finding = unknown_name(program, index, name, access, &at_hand);
@@ -41,7 +42,8 @@ pub fn resolve_blocks(program: &mut Program, checker: &mut Checker) {
             }
         }
         let block = &mut program.blocks[index];
-        (block.uses, block.missing) = (uses, missing);
+        block.uses = reads.iter().copied().chain(writes.iter().copied().filter(|var| !reads.contains(var))).collect();
+        (block.reads, block.writes, block.missing, block.facts) = (reads, writes, missing, facts);
     }
     program.findings.extend(found);
 }
@@ -61,11 +63,13 @@ fn unknown_name(
 ) -> Option<Diagnostic> {
     let block = &program.blocks[block];
     let is_bridge = program.bridges.iter().any(|bridge| *bridge.name == *name.name);
-    let is_at_hand = at_hand.contains(&&*name.name);
+    let is_known = is_bridge || at_hand.contains(&&*name.name);
+    if is_known && access == Access::Read {
+        return None;
+    }
     let span = place(program.source(block.span), block.span, name.line, Some((&name.name, Role::Name)));
     match access {
-        Access::Read if is_bridge || is_at_hand => None,
-        Access::Write if is_bridge || is_at_hand => {
+        Access::Write if is_known => {
             let message = format!("`{}` can't be assigned: it is not a variable of this program", name.name);
             Some(Diagnostic::error(Code::UnknownVariable, span, message).help("declare a variable of another name"))
         }

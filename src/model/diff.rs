@@ -1,7 +1,7 @@
 //! How two programs differ, as changes to elements named by their paths. Layout and comments are no difference, and what
 //! was renamed is no difference to what names it.
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::hash::Hash;
 use std::sync::Arc;
 
@@ -10,6 +10,7 @@ use super::element::{ElementId, Kind};
 use super::ids::*;
 use super::matching::{Key, Matching, Reading, Side};
 use super::program::*;
+use crate::syntax::lua_tokens::same_code;
 
 pub fn diff(old: &Program, new: &Program, matching: &Matching) -> Vec<Change> {
     let both = Both { old, new, matching };
@@ -44,7 +45,7 @@ pub fn same_actions(old: &Program, a: StateId, new: &Program, b: StateId, matchi
         && was.onentry.iter().zip(&now.onentry).all(same_entry)
 }
 
-/// Whether entering a state spawns the same machines in the same order in both programs.
+/// Whether entering a state spawns the same machines in the same states, in the same order.
 pub fn same_spawns(old: &Program, a: StateId, new: &Program, b: StateId, matching: &Matching) -> bool {
     let (was, now): (Vec<_>, Vec<_>) = (old[a].spawns().collect(), new[b].spawns().collect());
     was.len() == now.len() && was.iter().zip(&now).all(|((_, was), (_, now))| same_spawn(old, was, new, now, matching))
@@ -52,15 +53,31 @@ pub fn same_spawns(old: &Program, a: StateId, new: &Program, b: StateId, matchin
 
 /// Whether a block does the same in both programs.
 pub fn same_block(old: &Program, a: BlockId, new: &Program, b: BlockId, matching: &Matching) -> bool {
-    old[a].code == new[b].code || keys(Side::Old(old, new), matching, a) == keys(Side::New(new), matching, b)
+    let same_text =
+        || old[a].code == new[b].code || keys(Side::Old(old, new), matching, a) == keys(Side::New(new), matching, b);
+    same_modules(old, &old[a].requires, new, &new[b].requires) && same_text()
 }
 
-fn same_spawn(old: &Program, was: &Spawn, new: &Program, now: &Spawn, matching: &Matching) -> bool {
-    if let (Some((machine, state)), Some(target)) = (was.target, now.target) {
-        return (matching.machine(machine), matching.state(state)) == (Some(target.0), Some(target.1));
+/// The text of required Lua files counts as part of a block.
+pub fn same_modules(old: &Program, a: &[ModuleId], new: &Program, b: &[ModuleId]) -> bool {
+    if a.is_empty() && b.is_empty() {
+        return true;
     }
-    let same_text = was.machine_name == now.machine_name && was.state_name == now.state_name;
-    same_text || spawn_keys(Side::Old(old, new), matching, was) == spawn_keys(Side::New(new), matching, now)
+    let named = |program: &Program, modules: &[ModuleId]| -> BTreeMap<Arc<str>, Arc<str>> {
+        modules.iter().map(|&it| (program[it].name.clone(), program.module_text(it).clone())).collect()
+    };
+    let (a, b) = (named(old, a), named(new, b));
+    a.len() == b.len() && a.iter().zip(&b).all(|(a, b)| a.0 == b.0 && (a.1 == b.1 || same_code(a.1, b.1)))
+}
+
+/// Whether two spawns are of the same machine in the same state; one that names something unknown says the same.
+pub fn same_spawn(old: &Program, was: &Spawn, new: &Program, now: &Spawn, matching: &Matching) -> bool {
+    match (was.target, now.target) {
+        (Some((machine, state)), Some((now_machine, now_state))) => {
+            matching.machine(machine) == Some(now_machine) && matching.state(state) == Some(now_state)
+        }
+        _ => spawn_keys(Side::Old(old, new), matching, was) == spawn_keys(Side::New(new), matching, now),
+    }
 }
 
 fn spawn_keys<'p>(side: Side<'p>, matching: &Matching, spawn: &'p Spawn) -> Vec<Key<'p>> {

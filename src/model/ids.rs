@@ -22,4 +22,6 @@ ids! {
     VarId,
     /// A block of Lua.
     BlockId,
+    /// A Lua file.
+    ModuleId,
 }

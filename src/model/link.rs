@@ -7,12 +7,9 @@ use super::ids::*;
 use super::names::Names;
 use super::program::*;
 use super::resolve::Resolver;
+use super::suggestion::suggestion;
 use crate::syntax::ast::{self, MachineItem, StateItem};
-use crate::syntax::nearest::nearest;
 use crate::syntax::{Code, Diagnostic, Span};
-
-/// Names listed at most where none is near to the one that was meant.
-const LISTED: usize = 8;
 
 impl Resolver<'_> {
     pub(super) fn link(&mut self) {
@@ -132,10 +129,7 @@ impl Resolver<'_> {
             _ => machine,
         };
         let target = self.find_state(owner, &tree.target);
-        if target.is_none()
-            && kind == TransitionKind::Exit
-            && self.program.state_named(machine, &tree.target.text).is_some()
-        {
+        if target.is_none() && kind == TransitionKind::Exit && self.state_named(machine, &tree.target.text).is_some() {
             self.help_last(format!(
                 "an exit goes to a state of `{}`; `on` goes to one of `{}`",
                 self.name(owner),
@@ -156,14 +150,31 @@ impl Resolver<'_> {
     }
 
     fn unknown_machine(&mut self, spawn: &ast::Spawn, by: Option<StateId>) {
-        let Some(elsewhere) = self.program.machines.iter().find(|machine| machine.name == spawn.machine.text) else {
+        let elsewhere = self.program.machines.iter().find(|machine| machine.name == spawn.machine.text).cloned();
+        let Some(elsewhere) = elsewhere else {
             let known = Names::of(&self.program).machines(by);
             return self.unknown(Code::UnknownMachine, "machine", &spawn.machine, known.iter().map(|name| &**name));
         };
+        if elsewhere.parent.is_none() {
+            return self.not_imported(spawn, &elsewhere);
+        }
         let message = format!("machine `{}` can't be spawned here: it is written in another state", spawn.machine.text);
         let help = "a spawn may name the machines of its own state, of the states around it, and those at top level";
         let diagnostic = Diagnostic::error(Code::UnknownMachine, spawn.machine.span, message);
         self.diagnostics.push(diagnostic.also(elsewhere.name_span, "written here").help(help));
+    }
+
+    /// A machine at top level of another file.
+    fn not_imported(&mut self, spawn: &ast::Spawn, machine: &Machine) {
+        let (name, file) = (&machine.name, &self.program.source(machine.span).name);
+        let exported = self.files[machine.span.file.0 as usize].exports().any(|export| export.text == *name);
+        let (why, help) = match exported {
+            true => (format!("this file doesn't import `{file}`"), format!("import `{file}` in this file as well")),
+            false => (format!("`{file}` doesn't export it"), format!("add `(export {name})` to `{file}`")),
+        };
+        let message = format!("machine `{name}` can't be spawned here: {why}");
+        let diagnostic = Diagnostic::error(Code::UnknownMachine, spawn.machine.span, message);
+        self.diagnostics.push(diagnostic.also(machine.name_span, "written here").help(help));
     }
 
     /// Where a transition can be taken, it joins the lists that a step walks.
@@ -180,10 +191,16 @@ impl Resolver<'_> {
             }
             return;
         }
-        let states: Vec<StateId> =
-            self.program[machine].states.iter().copied().filter(|&state| transition.leaves(state)).collect();
+        let states = match &transition.sources {
+            Sources::Any => &self.program.machines[machine.index()].states,
+            Sources::These { states, .. } => states,
+        };
         for state in states {
-            self.program.states[state.index()].outgoing.push(id);
+            let outgoing = &mut self.program.states[state.index()].outgoing;
+            // A state may be named twice among the sources.
+            if outgoing.last() != Some(&id) {
+                outgoing.push(id);
+            }
         }
     }
 
@@ -228,7 +245,10 @@ impl Resolver<'_> {
 
     /// A state of a machine; where none is called so, that is said.
     fn find_state(&mut self, machine: MachineId, name: &ast::Name) -> Option<StateId> {
-        let state = Names::of(&self.program).state(machine, &name.text);
+        let renamed = || self.program.alias(Kind::State, &name.text).map(|alias| StateId(alias.index));
+        let state = self
+            .state_named(machine, &name.text)
+            .or_else(|| renamed().filter(|&state| self.program[state].machine == machine));
         if !self.program.is_called(state, &name.text) {
             self.unknown_state(machine, name);
         }
@@ -251,12 +271,9 @@ impl Resolver<'_> {
     ) {
         let known: Vec<&str> = known.into_iter().collect();
         let alias = Kind::missing(code).and_then(|kind| self.program.alias(kind, &name.text));
-        let help = match nearest(&name.text, known.iter().copied()) {
-            _ if let Some(renamed) = alias => renamed_help(&name.text, self.program.name(renamed)),
-            Some(near) => format!("did you mean `{near}`?"),
-            None if known.is_empty() => "there is none here yet".to_string(),
-            None if known.len() <= LISTED => format!("there is: {}", known.join(", ")),
-            None => format!("there is: {}, and {} more", known[..LISTED].join(", "), known.len() - LISTED),
+        let help = match alias {
+            Some(renamed) => renamed_help(&name.text, self.program.name(renamed)),
+            None => suggestion(&name.text, &known),
         };
         let article = if what.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
         let message = format!("`{}` is not {article} {what}", name.text);

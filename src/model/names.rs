@@ -5,6 +5,7 @@ use std::sync::Arc;
 use super::element::Kind;
 use super::ids::*;
 use super::program::Program;
+use crate::syntax::FileId;
 
 pub struct Names<'p> {
     program: &'p Program,
@@ -59,23 +60,19 @@ impl<'p> Names<'p> {
         self.outwards(Some(machine)).any(|around| around == self.program[event].machine).then_some(event)
     }
 
-    pub fn state(&self, machine: MachineId, name: &str) -> Option<StateId> {
-        let renamed = || self.program.alias(Kind::State, name).map(|alias| StateId(alias.index));
-        self.program
-            .state_named(machine, name)
-            .or_else(|| renamed().filter(|&state| self.program[state].machine == machine))
-    }
-
     pub fn events(&self, machine: MachineId) -> Vec<Arc<str>> {
         let events = self.outwards(Some(machine)).flat_map(|machine| self.program[machine].events.iter());
         events.map(|&event| self.program[event].name.clone()).collect()
     }
 
-    /// The machines a spawn may name: those written in the state and in the states around it, then those at top level.
+    /// The machines a spawn may name: those written in the state and in the states around it, then those at top level
+    /// of its file, then those the file imports. Outside all states it is a spawn of the program itself.
     fn machines_in_scope(&self, state: Option<StateId>) -> impl Iterator<Item = MachineId> + use<'p> {
         let program = self.program;
         let around = std::iter::successors(state, move |&state| program[program[state].machine].parent);
-        around.flat_map(move |state| program[state].machines.iter().copied()).chain(program.tops.iter().copied())
+        let file = state.map_or(FileId(0), |state| program[state].span.file);
+        let outside = program.spawnable.get(file.0 as usize).into_iter().flatten().copied();
+        around.flat_map(move |state| program[state].machines.iter().copied()).chain(outside)
     }
 
     pub fn machine(&self, state: Option<StateId>, name: &str) -> Option<MachineId> {

@@ -5,12 +5,13 @@ use std::sync::Arc;
 
 use super::element::Alias;
 use super::ids::*;
-use crate::syntax::{Diagnostic, Source, Span};
+use crate::lua::Facts;
+use crate::syntax::{Diagnostic, FileId, Source, Span};
 
 /// Elements that refer to something that doesn't exist keep the name as written and are skipped when run.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Program {
-    /// The texts, by the `FileId` of spans; the first is the program itself.
+    /// The texts, by the `FileId` of spans: the program itself, the files it imports, the Lua files it requires.
     pub sources: Vec<Source>,
     pub machines: Vec<Machine>,
     pub states: Vec<State>,
@@ -18,10 +19,16 @@ pub struct Program {
     pub events: Vec<Event>,
     pub vars: Vec<Var>,
     pub blocks: Vec<Block>,
-    /// Top-level machines, variables and spawns in the order written.
+    pub modules: Vec<Module>,
+    /// Top-level machines in the order written, those of the program itself before those of imported files.
     pub tops: Vec<MachineId>,
+    /// By `FileId`: the top-level machines that spawns in the file may name, its own before those it imports.
+    pub spawnable: Vec<Vec<MachineId>>,
+    /// In the order they are initialised.
     pub globals: Vec<VarId>,
     pub spawns: Vec<Spawn>,
+    /// Machines that the program and the files it imports let others import.
+    pub exported: Vec<MachineId>,
     pub bridges: Vec<Bridge>,
     pub on_pause: Option<BlockId>,
     pub on_resume: Option<BlockId>,
@@ -137,6 +144,7 @@ pub struct Event {
     pub machine: MachineId,
     pub block: BlockId,
     pub span: Span,
+    pub name_span: Span,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -161,8 +169,24 @@ pub struct Block {
     pub owner: Owner,
     /// The variables it reads or writes, found through its scopes.
     pub uses: Vec<VarId>,
+    pub reads: Vec<VarId>,
+    pub writes: Vec<VarId>,
     /// Names in it that nothing is known by.
     pub missing: Vec<Arc<str>>,
+    /// What can be said of its text alone; nothing where that isn't Lua.
+    pub facts: Arc<Facts>,
+    /// The Lua files it requires by a literal name, also through other ones; sorted.
+    pub requires: Vec<ModuleId>,
+}
+
+/// A Lua file that blocks require by a literal name: its text counts as part of each block that requires it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Module {
+    /// `a.b` for the file `a/b.lua`.
+    pub name: Arc<str>,
+    pub file: FileId,
+    /// Those that it requires in turn, also through other ones; sorted.
+    pub requires: Vec<ModuleId>,
 }
 
 /// The element a block is written in.
@@ -202,11 +226,16 @@ index! {
     EventId => events: Event,
     VarId => vars: Var,
     BlockId => blocks: Block,
+    ModuleId => modules: Module,
 }
 
 impl Program {
     pub fn source(&self, span: Span) -> &Source {
         &self.sources[span.file.0 as usize]
+    }
+
+    pub fn module_text(&self, module: ModuleId) -> &Arc<str> {
+        &self.sources[self[module].file.0 as usize].text
     }
 
     /// The machine that encloses the state a machine is written in.

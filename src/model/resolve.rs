@@ -4,13 +4,15 @@
 use std::collections::HashMap;
 use std::sync::Arc;
 
+use super::blocks::syntax_diagnostic;
 use super::element::Alias;
+use super::files::{File, precedence};
 use super::ids::*;
 use super::names::Names;
 use super::program::*;
 use crate::lua::Checker;
 use crate::syntax::ast::{self, Form, MachineItem, StateItem, Tree};
-use crate::syntax::{Code, Diagnostic, Source, Span};
+use crate::syntax::{Code, Diagnostic, FileId, Source, Span};
 
 /// A robot chosen on the command line; it takes the place of the program's own bridge of that name.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -19,88 +21,89 @@ pub struct Robot {
     pub kind: String,
 }
 
+/// A program of one file.
 pub fn resolve(tree: &Tree, source: Source, robots: &[Robot], checker: &mut Checker) -> Program {
-    resolve_renamed(tree, source, robots, checker, None)
+    let file = File { source, tree, imports: Vec::new(), qualifier: String::new() };
+    resolve_files(&[file], robots, checker, None)
 }
 
-/// With `alias`, one element of the program that comes of it can be found by another name as well.
-pub fn resolve_renamed(
-    tree: &Tree,
-    source: Source,
-    robots: &[Robot],
-    checker: &mut Checker,
-    alias: Option<Alias>,
-) -> Program {
-    let mut resolver =
-        Resolver { program: Program { sources: vec![source], ..Program::default() }, ..Resolver::default() };
-    resolver.declare(tree);
-    resolver.bridges(tree, robots, checker);
+/// `files` by `FileId`: the program itself is the first. With `alias`, one element of the program that comes of it can be
+/// found by another name as well.
+pub fn resolve_files(files: &[File], robots: &[Robot], checker: &mut Checker, alias: Option<Alias>) -> Program {
+    let order = precedence(files);
+    let mut resolver = Resolver { files, ..Resolver::default() };
+    resolver.program.sources = files.iter().map(|file| file.source.clone()).collect();
+    resolver.program.spawnable = vec![Vec::new(); files.len()];
+    resolver.declare(&order);
+    resolver.share_machines();
+    resolver.bridges(&order, robots, checker);
     resolver.program.alias = alias;
     resolver.link();
     let mut program = resolver.program;
     program.findings = resolver.diagnostics;
     super::blocks::resolve_blocks(&mut program, checker);
+    for block in resolver.ignored {
+        if let Err(error) = checker.check(&block.text) {
+            let mistake = syntax_diagnostic(program.source(block.span), block.span, &error);
+            program.findings.push(mistake);
+        }
+    }
+    if files.len() > 1 {
+        program.globals = super::globals::initialisation_order(&program, &order);
+    }
     program
 }
 
 /// What is still to be linked refers to the tree.
 #[derive(Default)]
 pub(super) struct Resolver<'t> {
+    pub(super) files: &'t [File<'t>],
     pub(super) program: Program,
     pub(super) diagnostics: Vec<Diagnostic>,
     pub(super) machines: Vec<(MachineId, &'t ast::Machine)>,
     pub(super) states: Vec<(StateId, &'t ast::State)>,
+    named_states: HashMap<(MachineId, Arc<str>), StateId>,
     pub(super) spawns: Vec<&'t ast::Spawn>,
+    /// Blocks of imported files that don't count: they have to be Lua nevertheless.
+    pub(super) ignored: Vec<&'t ast::Block>,
 }
 
 impl<'t> Resolver<'t> {
-    fn declare(&mut self, tree: &'t Tree) {
+    fn declare(&mut self, order: &[FileId]) {
         // Variables first, here as in machines: what is inside may not hide them, wherever they are written.
-        for form in &tree.forms {
-            if let Form::Var(var) = form {
-                self.declare_global(var);
-            }
+        for &file in order {
+            self.declare_globals(file);
         }
-        for form in &tree.forms {
+        for &file in order {
+            self.declare_forms(file);
+        }
+    }
+
+    /// What an imported file spawns and does at a pause counts only when it is run by itself.
+    fn declare_forms(&mut self, file: FileId) {
+        let is_program = file == FileId(0);
+        for form in &self.files[file.0 as usize].tree.forms {
             match form {
                 Form::Machine(machine) => {
                     if let Some(id) = self.declare_machine(machine, None) {
                         self.program.tops.push(id);
+                        self.program.spawnable[file.0 as usize].push(id);
                     }
                 }
-                Form::Spawn(spawn) => self.spawns.push(spawn),
-                Form::OnPause(block) => self.declare_hook(Hook::Pause, block),
-                Form::OnResume(block) => self.declare_hook(Hook::Resume, block),
-                Form::Import(import) => self.unsupported(import.span, "import"),
-                Form::Export(export) => self.check_export(export, tree),
-                Form::Var(_) | Form::Bridge(_) => {}
+                Form::Spawn(spawn) if is_program => self.spawns.push(spawn),
+                Form::OnPause(block) if is_program => self.declare_hook(Hook::Pause, block),
+                Form::OnResume(block) if is_program => self.declare_hook(Hook::Resume, block),
+                Form::OnPause(block) | Form::OnResume(block) => self.ignored.push(block),
+                _ => {}
             }
         }
-        if self.spawns.is_empty() && !self.program.tops.is_empty() {
-            self.no_spawn();
-        }
     }
 
-    fn unsupported(&mut self, span: Span, what: &str) {
-        self.diagnostics.push(
-            Diagnostic::error(Code::Unsupported, span, format!("`{what}` is not available yet; the form is ignored"))
-                .help("copy the machines into this file for now"),
-        );
-    }
-
-    fn check_export(&mut self, export: &ast::Export, tree: &Tree) {
-        let known = tree.forms.iter().filter_map(|form| match form {
-            Form::Machine(machine) => Some(&*machine.name.text),
-            _ => None,
-        });
-        let known: Vec<&str> = known.collect();
-        if !known.contains(&&*export.machine.text) {
-            self.unknown(Code::UnknownMachine, "machine", &export.machine, known);
-        }
-    }
-
-    fn no_spawn(&mut self) {
-        let top = &self.program[self.program.tops[0]];
+    /// Says so where machines are at hand and none is spawned, here or by those who import the program.
+    pub(super) fn check_spawns(&mut self) {
+        let spawned = !self.spawns.is_empty() || self.files[0].exports().next().is_some();
+        let Some(&top) = self.program.spawnable[0].first().filter(|_| !spawned) else { return };
+        let top = &self.program[top];
         let state = top.states.first().map_or("STATE", |&state| &*self.program[state].name);
         let help = format!("add `(spawn {} {state})` at the end of the file", top.name);
         let message = "nothing is spawned, so nothing will run";
@@ -136,7 +139,11 @@ impl<'t> Resolver<'t> {
             machine,
             owner,
             uses: Vec::new(),
+            reads: Vec::new(),
+            writes: Vec::new(),
             missing: Vec::new(),
+            facts: Arc::default(),
+            requires: Vec::new(),
         });
         id
     }
@@ -147,25 +154,14 @@ impl<'t> Resolver<'t> {
         self.block(block, Some(machine), owner)
     }
 
-    fn declare_global(&mut self, var: &ast::Var) {
-        if let Some(id) = self.declare_var(var, None) {
-            self.program.globals.push(id);
-        }
-    }
-
-    fn declare_var(&mut self, var: &ast::Var, machine: Option<MachineId>) -> Option<VarId> {
+    pub(super) fn declare_var(&mut self, var: &ast::Var, machine: Option<MachineId>) -> Option<VarId> {
         if let Some(first) = Names::of(&self.program).var(machine, &var.name.text) {
-            let (what, code) = match self.program[first].machine == machine {
-                true => ("declared twice", Code::Duplicate),
-                false => ("already a variable of an enclosing scope", Code::Redeclared),
+            let first = &self.program[first];
+            let (first, code) = match first.machine == machine {
+                true => (first.name_span, Code::Duplicate),
+                false => (first.name_span, Code::Redeclared),
             };
-            let message = format!("variable `{}` is {what}; this declaration is ignored", var.name.text);
-            let first = self.program[first].name_span;
-            self.diagnostics.push(
-                Diagnostic::error(code, var.name.span, message)
-                    .also(first, "declared here")
-                    .help("give one of them another name; names may be reused only in machines beside each other"),
-            );
+            self.redeclared(code, var, first);
             return None;
         }
         let init = self.block(&var.init, machine, Owner::Var(VarId(self.program.vars.len() as u32)));
@@ -179,10 +175,23 @@ impl<'t> Resolver<'t> {
         Some(id)
     }
 
+    pub(super) fn redeclared(&mut self, code: Code, var: &ast::Var, first: Span) {
+        let what = match code {
+            Code::Duplicate => "declared twice",
+            _ => "already a variable of an enclosing scope",
+        };
+        let message = format!("variable `{}` is {what}; this declaration is ignored", var.name.text);
+        self.diagnostics.push(
+            Diagnostic::error(code, var.name.span, message)
+                .also(first, "declared here")
+                .help("give one of them another name; names may be reused only in machines beside each other"),
+        );
+    }
+
     fn declare_machine(&mut self, machine: &'t ast::Machine, parent: Option<StateId>) -> Option<MachineId> {
         let siblings = match parent {
             Some(state) => &self.program[state].machines,
-            None => &self.program.tops,
+            None => &self.program.spawnable[machine.span.file.0 as usize],
         };
         let twin = siblings.iter().find(|&&id| self.program[id].name == machine.name.text);
         if let Some(&twin) = twin {
@@ -193,7 +202,7 @@ impl<'t> Resolver<'t> {
         let name = machine.name.text.clone();
         let path = match parent {
             Some(state) => join(&self.program[state].path, &name),
-            None => name.clone(),
+            None => self.top_path(machine),
         };
         let id = MachineId(self.program.machines.len() as u32);
         self.program.machines.push(Machine {
@@ -239,16 +248,24 @@ impl<'t> Resolver<'t> {
         let block = self.block(&event.block, Some(machine), Owner::Event(EventId(self.program.events.len() as u32)));
         let path = join(&self.program[machine].path, &event.name.text);
         let id = EventId(self.program.events.len() as u32);
-        self.program.events.push(Event { name: event.name.text.clone(), path, machine, block, span: event.span });
+        self.program.events.push(Event {
+            name: event.name.text.clone(),
+            path,
+            machine,
+            block,
+            span: event.span,
+            name_span: event.name.span,
+        });
         self.program.machines[machine.index()].events.push(id);
     }
 
     fn declare_state(&mut self, state: &'t ast::State, machine: MachineId) {
-        if let Some(twin) = self.program.state_named(machine, &state.name.text) {
+        let id = StateId(self.program.states.len() as u32);
+        let twin = *self.named_states.entry((machine, state.name.text.clone())).or_insert(id);
+        if twin != id {
             let first = self.program[twin].name_span;
             return self.duplicate("state", &state.name, first);
         }
-        let id = StateId(self.program.states.len() as u32);
         self.program.states.push(State {
             name: state.name.text.clone(),
             path: join(&self.program[machine].path, &state.name.text),
@@ -274,49 +291,17 @@ impl<'t> Resolver<'t> {
         }
     }
 
-    fn duplicate(&mut self, what: &str, name: &ast::Name, first: Span) {
+    pub(super) fn state_named(&self, machine: MachineId, name: &Arc<str>) -> Option<StateId> {
+        self.named_states.get(&(machine, name.clone())).copied()
+    }
+
+    pub(super) fn duplicate(&mut self, what: &str, name: &ast::Name, first: Span) {
         let message = format!("{what} `{}` is declared twice; this declaration is ignored", name.text);
         self.diagnostics.push(
             Diagnostic::error(Code::Duplicate, name.span, message)
                 .also(first, "first declared here")
                 .help("rename or remove one of them"),
         );
-    }
-
-    fn bridges(&mut self, tree: &Tree, robots: &[Robot], checker: &mut Checker) {
-        let mut chosen: HashMap<&str, &str> = robots.iter().map(|robot| (&*robot.name, &*robot.kind)).collect();
-        for form in &tree.forms {
-            let Form::Bridge(bridge) = form else { continue };
-            if let Some(twin) = self.program.bridges.iter().find(|known| known.name == bridge.name.text) {
-                let first = twin.span;
-                self.duplicate("bridge", &bridge.name, first);
-                continue;
-            }
-            let other = chosen.remove(&*bridge.name.text).filter(|kind| *kind != &*bridge.kind.text);
-            let (kind, config) = match other {
-                Some(kind) => (kind.into(), serde_json::json!({})),
-                None => (bridge.kind.text.clone(), self.config(bridge, checker)),
-            };
-            self.program.bridges.push(Bridge { name: bridge.name.text.clone(), kind, config, span: bridge.span });
-        }
-        for robot in robots.iter().filter(|robot| chosen.contains_key(&*robot.name)) {
-            let (name, kind) = (robot.name.as_str().into(), robot.kind.as_str().into());
-            self.program.bridges.push(Bridge { name, kind, config: serde_json::json!({}), span: Span::default() });
-        }
-    }
-
-    fn config(&mut self, bridge: &ast::Bridge, checker: &mut Checker) -> serde_json::Value {
-        let Some(block) = &bridge.config else { return serde_json::json!({}) };
-        checker.config(&block.text).unwrap_or_else(|mut error| {
-            // The bracket that Lua sees at the end is not in the text.
-            if !block.text.contains('}') {
-                error.message = error.message.replace("near '}'", "near ']'");
-                error.token = error.token.filter(|token| token != "}");
-            }
-            let source = &self.program.sources[block.span.file.0 as usize];
-            self.diagnostics.push(super::blocks::syntax_diagnostic(source, block.span, &error));
-            serde_json::json!({})
-        })
     }
 }
 

@@ -159,7 +159,7 @@ impl Program {
     }
 
     /// The variable that a free name of a block is.
-    fn var_in(&self, block: &Block, name: &str) -> Option<VarId> {
+    pub(super) fn var_in(&self, block: &Block, name: &str) -> Option<VarId> {
         let named = block.uses.iter().copied().find(|&var| *self[var].name == *name);
         let renamed = || block.uses.iter().copied().find(|&var| self.alias(Kind::Var, name) == Some(var.into()));
         named.or_else(renamed)

@@ -184,15 +184,28 @@ impl Engine {
 
     /// An unknown name was reported when the program was read: it is the same fault, and now it has happened.
     fn found_before(&self, block: BlockId, failure: &Failure) -> Option<Diagnostic> {
-        let name = failure.message.strip_prefix("there is no variable or function '")?.split('\'').next()?;
+        let variable = failure.message.strip_prefix("there is no variable or function '");
+        let variable = variable.and_then(|name| name.split('\'').next());
+        self.found_in(block, |finding| {
+            let name = self.program.source(finding.span).slice(finding.span);
+            match finding.code {
+                Code::UnknownVariable => variable == Some(name),
+                Code::UnknownField => {
+                    let told = [format!("`{name}`"), format!(".{name}`"), format!("'{name}'")];
+                    told.iter().any(|told| failure.message.contains(told))
+                }
+                _ => false,
+            }
+        })
+    }
+
+    /// What was found in a block when the program was read.
+    fn found_in(&self, block: BlockId, is_it: impl Fn(&Diagnostic) -> bool) -> Option<Diagnostic> {
         let within = self.program[block].span;
-        let is_it = |finding: &&Diagnostic| {
-            let Span { file, start, end } = finding.span;
-            finding.code == Code::UnknownVariable
-                && (file, start >= within.start, end <= within.end) == (within.file, true, true)
-                && self.program.source(within).slice(finding.span) == name
+        let inside = |Span { file, start, end }: Span| {
+            (file, start >= within.start, end <= within.end) == (within.file, true, true)
         };
-        self.program.findings.iter().find(is_it).cloned()
+        self.program.findings.iter().find(|finding| inside(finding.span) && is_it(finding)).cloned()
     }
 
     fn failure_span(&self, block: BlockId, failure: &Failure) -> Span {
@@ -225,6 +238,11 @@ impl Engine {
 
     #[cold]
     fn not_boolean(&mut self, block: BlockId, kind: &str) {
+        let known =
+            |finding: &Diagnostic| matches!(finding.code, Code::EventAssigns | Code::Smalltalk) && finding.is_error();
+        if let Some(found) = self.found_in(block, known) {
+            return self.block_fault(block, found.code, found.span, found.message, found.help);
+        }
         let span = self.program[block].span;
         let (what, help) = match self.program[block].owner {
             Owner::Event(event) => {

@@ -54,6 +54,7 @@ pub struct Engine {
     pub(super) program: Arc<Program>,
     pub(super) plan: Rc<Plan>,
     pub(super) store: Store,
+    pub(super) modules: super::modules::Texts,
     pub(super) robots: Robots,
     /// By machine.
     pub(super) running: Vec<Option<Running>>,
@@ -94,10 +95,11 @@ impl Running {
 
 impl Engine {
     pub fn new(options: Options) -> Engine {
-        Engine {
+        let mut engine = Engine {
             program: Arc::default(),
             plan: Rc::default(),
             store: Store::new(Lua::new(options.limits, options.access, options.seed)),
+            modules: super::modules::Texts::default(),
             robots: Robots::default(),
             running: Vec::new(),
             tops: Vec::new(),
@@ -113,22 +115,14 @@ impl Engine {
             faults: Faults::default(),
             changes: super::changes::Changes::default(),
             breakpoints: Breakpoints::default(),
-        }
+        };
+        engine.library(|name| Err(format!("module '{name}' is not found")));
+        engine
     }
 
     /// Makes a robot known to all blocks under its name, or changes what it offers.
     pub fn describe(&mut self, bridge: &str, description: &Description, stale: Option<Time>) {
         self.robots.describe(&mut self.store.lua, bridge, description, stale);
-    }
-
-    /// Where the text of a `require`d Lua module comes from.
-    pub fn library(&mut self, find: impl Fn(&str) -> Result<String, String> + 'static) {
-        self.store.lua.library(Box::new(find));
-    }
-
-    /// Reads a required Lua module anew when it is required next.
-    pub fn forget(&mut self, module: &str) {
-        self.store.lua.forget(module);
     }
 
     /// For another thread, to learn of a block that nothing stops.

@@ -12,6 +12,7 @@ pub mod findings;
 mod force;
 mod machine;
 mod met;
+mod modules;
 mod note;
 mod obey;
 mod patch;

@@ -5,6 +5,7 @@ use std::ops::Range;
 
 use super::reuse::{self, Key};
 use crate::lua::{self, Cell, Lua, SyntaxError};
+use crate::model::renamed::code_now;
 use crate::model::{Block, BlockId, MachineId, Matching, Program, VarId};
 
 pub struct Store {
@@ -87,7 +88,19 @@ impl Store {
     /// variables keep their functions.
     pub fn take_over(&mut self, old: &Program, new: &Program, matching: &Matching) -> Vec<Uncompiled> {
         self.take_over_cells(old, new, matching);
-        self.take_over_blocks(new)
+        let stopped = self.stopped_and_renamed(old, new, matching);
+        self.take_over_blocks(new, &stopped)
+    }
+
+    /// Blocks that are not run again, as they read with renamed variables.
+    fn stopped_and_renamed(&self, old: &Program, new: &Program, matching: &Matching) -> Vec<Key> {
+        if !self.any_stopped() {
+            return Vec::new();
+        }
+        let stopped = (0..self.blocks.len()).filter(|&index| self.blocks[index].stopped);
+        let codes = stopped.map(|index| (index, code_now(old, BlockId(index as u32), new, matching)));
+        let renamed = codes.filter(|(index, code)| old.blocks[*index].code != *code);
+        renamed.map(|(index, code)| self.keys[index].reading(code)).collect()
     }
 
     fn take_over_cells(&mut self, old: &Program, new: &Program, matching: &Matching) {
@@ -101,8 +114,8 @@ impl Store {
         self.cells = kept.into_iter().map(|cell| cell.unwrap_or_else(|| self.lua.cell())).collect();
     }
 
-    fn take_over_blocks(&mut self, new: &Program) -> Vec<Uncompiled> {
-        let pairs = reuse::pairs(&self.keys, &new.blocks, &self.cells);
+    fn take_over_blocks(&mut self, new: &Program, renamed: &[Key]) -> Vec<Uncompiled> {
+        let pairs = reuse::pairs(&self.keys, new, &self.cells);
         let mut keys: Vec<Option<Key>> = self.keys.drain(..).map(Some).collect();
         let old: Vec<Compiled> = std::mem::take(&mut self.blocks);
         self.stopped = 0;
@@ -110,11 +123,13 @@ impl Store {
         for ((index, block), pair) in new.blocks.iter().enumerate().zip(pairs) {
             let kept = pair.and_then(|pair| Some((keys[pair].take()?, old[pair])));
             let (key, mut compiled) = kept.unwrap_or_else(|| {
-                let compiled = self.compile(new, block).unwrap_or_else(|error| {
+                let key = Key::of(new, block, &self.cells);
+                let mut compiled = self.compile(new, block).unwrap_or_else(|error| {
                     uncompiled.push(Uncompiled { block: BlockId(index as u32), error });
                     Compiled::default()
                 });
-                (Key::of(block, &self.cells), compiled)
+                compiled.stopped = renamed.iter().any(|stopped| stopped.is_renamed(&key));
+                (key, compiled)
             });
             compiled.machine = block.machine;
             compiled.uses_variables = !block.uses.is_empty();

@@ -1,5 +1,6 @@
 //! Every save of a program's files becomes a command: its text is compiled here, beside the engine's thread, which only
-//! takes finished programs over. Worlds and required Lua files are watched like the program.
+//! takes finished programs over. Imported and required files are part of the program; worlds, and Lua files whose names
+//! blocks make up while they run, are watched like it.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::io;
@@ -16,7 +17,7 @@ use super::{findings, loader, modules, robots};
 use crate::model::{Edit, Program};
 use crate::runtime::Command;
 use crate::runtime::record::Finding;
-use crate::syntax::Source;
+use crate::syntax::{FileId, Source};
 
 /// Ends when dropped.
 pub struct Edits {
@@ -65,8 +66,11 @@ impl Heard {
         let watch = Watch::new([known], move |saved| drop(saves.send(Note::Saved(saved))))?;
         let inbox = self.inbox;
         let thread = Builder::new().name("edits".to_string()).spawn(move || {
-            let desk = Desk { file, watch, commands, beside: BTreeSet::new(), required: BTreeMap::new() };
-            desk.work(first, compiler(), &inbox);
+            let compiler = compiler();
+            let (beside, required) = (BTreeSet::new(), BTreeMap::new());
+            let desk =
+                Desk { file, source: first, compiler, watch, commands, running: Arc::default(), beside, required };
+            desk.work(&inbox);
         })?;
         Ok(Edits { notes: self.notes, thread: Some(thread) })
     }
@@ -85,22 +89,25 @@ impl Drop for Edits {
 struct Desk {
     /// The program.
     file: PathBuf,
+    /// Its text as last saved.
+    source: Source,
+    compiler: Compiler,
     watch: Watch,
     commands: Commands,
+    /// What ran at the last save: held until the next one, so that it is dropped here and not on the engine's thread.
+    running: Arc<Program>,
     /// Files that the robots read.
     beside: BTreeSet<PathBuf>,
+    /// Lua files that blocks have read while they ran.
     required: BTreeMap<PathBuf, Watched>,
 }
 
 impl Desk {
-    fn work(mut self, first: Source, mut compiler: Compiler, inbox: &Receiver<Note>) {
-        self.load(&mut compiler, first);
+    fn work(mut self, inbox: &Receiver<Note>) {
+        self.load();
         for note in inbox {
             match note {
-                Note::Saved(Saved::Text { path, text }) if path == self.file => {
-                    self.load(&mut compiler, Source::new(path.display().to_string(), text));
-                }
-                Note::Saved(saved) => self.commands.send(self.told(saved, &mut compiler)),
+                Note::Saved(saved) => self.saved(saved),
                 Note::Required(known) => {
                     self.required.insert(known.path.clone(), known);
                     self.watch_all();
@@ -110,18 +117,41 @@ impl Desk {
         }
     }
 
-    fn load(&mut self, compiler: &mut Compiler, source: Source) {
-        let running = self.commands.running();
-        let command = match compiler.compile_after(source, &running) {
+    fn saved(&mut self, saved: Saved) {
+        match saved {
+            Saved::Text { path, text } if path == self.file => {
+                self.source = Source::new(path.display().to_string(), text);
+                self.load();
+            }
+            // Another file's save has brought it in already.
+            Saved::Text { path, text } if self.taken(&path).is_some_and(|taken| taken.as_ref() == Some(&text)) => {}
+            Saved::Text { path, .. } if self.taken(&path).is_some() => self.load(),
+            Saved::Back { path } if self.taken(&path) == Some(None) => self.load(),
+            saved => {
+                let told = self.told(saved);
+                self.commands.send(told);
+            }
+        }
+    }
+
+    /// The text with which a file is part of the program, none while it can't be read; nothing for other files.
+    fn taken(&self, path: &Path) -> Option<Option<Arc<str>>> {
+        let reached = self.compiler.reached().iter().find(|reached| reached.path == path)?;
+        Some(reached.text.clone())
+    }
+
+    fn load(&mut self) {
+        self.running = self.commands.running();
+        let command = match self.compiler.compile_after(self.source.clone(), &self.running) {
             Ok(program) => {
                 self.beside = self.files_of_robots(&program);
-                self.watch_all();
-                Command::Load(Edit::of(&running, program))
+                Command::Load(Edit::of(&self.running, program))
             }
             Err(Rejected { sources, diagnostics }) => {
                 Command::Reject { findings: findings::errors_first(&diagnostics, &sources) }
             }
         };
+        self.watch_all();
         self.commands.send(command);
     }
 
@@ -137,12 +167,22 @@ impl Desk {
             Watched { path: path.clone(), text }
         };
         let read = std::iter::once(&self.file).chain(&self.beside).map(watched);
-        self.watch.set_paths(read.chain(self.required.values().cloned()));
+        let reached = self.compiler.reached().iter().cloned();
+        let mut all: BTreeMap<PathBuf, Watched> = BTreeMap::new();
+        for file in read.chain(reached).chain(self.required.values().cloned()) {
+            all.entry(file.path.clone()).or_insert(file);
+        }
+        // Of one that couldn't be read any text is news, also the one known from before.
+        let unread = |path: &PathBuf| self.taken(path) == Some(None);
+        if all.keys().any(unread) {
+            self.watch.set_paths(all.values().filter(|file| !unread(&file.path)).cloned());
+        }
+        self.watch.set_paths(all.into_values());
     }
 
-    fn told(&self, saved: Saved, compiler: &mut Compiler) -> Command {
+    fn told(&mut self, saved: Saved) -> Command {
         match saved {
-            Saved::Text { path, text } => self.beside_changed(&path, text, compiler),
+            Saved::Text { path, text } => self.beside_changed(&path, text),
             Saved::Back { .. } => Command::Reject { findings: Vec::new() },
             Saved::Missing { path } => rejected(of_file(&path, "the file is gone; the program goes on".to_string())),
             Saved::Unreadable { path, why } => rejected(unreadable(&path, &why)),
@@ -150,9 +190,10 @@ impl Desk {
     }
 
     /// A required file that isn't Lua any more is not taken over, just as a program that can't be read isn't.
-    fn beside_changed(&self, path: &Path, text: Arc<str>, compiler: &mut Compiler) -> Command {
+    fn beside_changed(&mut self, path: &Path, text: Arc<str>) -> Command {
         let source = Source::new(path.display().to_string(), text);
-        let mistake = if self.required.contains_key(path) { compiler.check_lua(&source) } else { None };
+        let required = self.required.contains_key(path);
+        let mistake = if required { self.compiler.check_lua(&source, FileId(0)) } else { None };
         match mistake {
             Some(mistake) => Command::Reject { findings: findings::errors_first(&[mistake], &[source]) },
             None => Command::FileChanged { file: path.display().to_string() },

@@ -14,6 +14,7 @@ mod report;
 mod search;
 mod suite;
 mod value;
+mod written;
 
 use std::io::{self, Write};
 use std::path::{Path, PathBuf};

@@ -66,6 +66,13 @@ macro_rules! codes {
             pub fn name(self) -> &'static str {
                 match self { $(Code::$variant => $name,)* }
             }
+
+            pub fn named(name: &str) -> Option<Code> {
+                match name {
+                    $($name => Some(Code::$variant),)*
+                    _ => None,
+                }
+            }
         }
     };
 }
@@ -99,7 +106,24 @@ codes! {
     EmptyProgram "empty-program",
     UnknownBridge "unknown-bridge",
     BadBridge "bad-bridge",
-    Unsupported "unsupported",
+    UnknownField "unknown-field",
+    // Other files.
+    UnreadableImport "unreadable-import",
+    ImportCycle "import-cycle",
+    NothingExported "nothing-exported",
+    UnknownModule "unknown-module",
+    // Sound as it stands, and hardly what was meant.
+    UnreachableState "unreachable-state",
+    NeverSpawned "never-spawned",
+    ShadowedTransition "shadowed-transition",
+    NeverRests "never-rests",
+    ReentersItself "reenters-itself",
+    EventAssigns "event-assigns",
+    UnusedEvent "unused-event",
+    UnusedVariable "unused-variable",
+    // Comments that allow a finding.
+    UnknownCode "unknown-code",
+    UnusedAllow "unused-allow",
     // While it runs.
     Runtime "runtime-error",
     NotBoolean "not-boolean",
@@ -107,5 +131,4 @@ codes! {
     AlreadyRunning "already-running",
     OverTime "over-time",
     OverMemory "over-memory",
-    NoMessageYet "no-message-yet",
 }

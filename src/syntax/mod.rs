@@ -1,5 +1,6 @@
 //! From text to tree: spans, the reader, the grammar's forms, and diagnostics. Knows nothing of what the forms mean.
 
+pub mod allow;
 pub mod ast;
 pub mod diagnostic;
 pub mod findings;

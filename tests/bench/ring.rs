@@ -2,12 +2,16 @@
 //! and one that goes round. The engine, headless and as fast as it can, against a plain Lua loop that calls the same
 //! closures in the same order, in the same run. Prints nanoseconds for each change of state, and their ratio.
 
+mod timing;
+
 use std::fmt::Write;
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 use lrp::model::{Program, resolve};
 use lrp::runtime::{Command, Engine, Options, Time};
 use lrp::syntax::{FileId, Source, parse};
+
+use timing::{best, median, timed};
 
 const CHANGES: u32 = 200_000;
 const ROUNDS: usize = 15;
@@ -50,22 +54,6 @@ fn report(what: &str, rounds: &[Duration], floor: Duration) {
     let each = |time: Duration| time.as_nanos() as f64 / f64::from(CHANGES);
     let ratio = best.as_secs_f64() / floor.as_secs_f64();
     println!("{what:36} {:7.1} ns  (median {:7.1})   x{ratio:.2}", each(best), each(median));
-}
-
-fn best(rounds: &[Duration]) -> Duration {
-    rounds.iter().copied().min().unwrap_or_default()
-}
-
-fn median(rounds: &[Duration]) -> Duration {
-    let mut sorted = rounds.to_vec();
-    sorted.sort();
-    sorted[sorted.len() / 2]
-}
-
-fn timed(run: impl FnOnce()) -> Duration {
-    let start = Instant::now();
-    run();
-    start.elapsed()
 }
 
 fn steps(engine: &mut Engine, after: impl Fn(&mut Engine)) {

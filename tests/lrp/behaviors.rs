@@ -22,7 +22,7 @@ macro_rules! behaviors {
     };
 }
 
-behaviors!(concurrent escapement exit forcing line_follower live_scenario resettable_timer stopwatch);
+behaviors!(concurrent escapement exit forcing line_follower line_keeper live_scenario resettable_timer stopwatch);
 
 #[test]
 fn no_behavior_test_is_left_out() {

@@ -180,6 +180,30 @@ fn run_says_what_is_likely_wrong() {
 }
 
 #[test]
+fn warnings_and_hints_are_no_failure() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::write(folder.path().join("a.lrp"), "(var x := [1]) (machine m (state a) (state b)) (spawn m a)").unwrap();
+    let said = lrp(folder.path(), &["check", "a.lrp"]);
+    assert_eq!((said.code, &*said.err), (Some(0), ""), "{said:?}");
+    assert!(said.out.contains("warning[unreachable-state]") && said.out.contains("hint[unused-variable]"), "{said:?}");
+}
+
+#[test]
+fn codes_are_explained() {
+    let said = lrp(root(), &["check", "--explain", "never-rests"]);
+    assert_eq!((said.code, &*said.err), (Some(0), ""), "{said:?}");
+    assert!(said.out.starts_with("never-rests\n\nTransitions that"), "{said:?}");
+    assert!(said.out.contains("Wrong:\n\n    (machine m") && !said.out.contains("```"), "{said:?}");
+    for args in [&["check", "--explain"][..], &["check", "--explain", "list"]] {
+        let said = lrp(root(), args);
+        assert_eq!((said.code, said.out.lines().count()), (Some(0), lrp::syntax::Code::ALL.len()), "{said:?}");
+    }
+    let said = lrp(root(), &["check", "--explain", "never-rest"]);
+    assert_eq!(said.code, Some(1));
+    assert_eq!(said.err, "lrp: no finding has the code `never-rest`; did you mean `never-rests`?\n");
+}
+
+#[test]
 fn check_for_tools_lists_everything() {
     let folder = tempfile::tempdir().unwrap();
     fs::write(folder.path().join("a.lrp"), "(machine m (state s) (on nope s -> s)) (spawn m s)").unwrap();

@@ -2,8 +2,9 @@
 //! how examples are marked, and nothing of what they are about.
 //!
 //! A fence ```` ```lrp ```` is a program without mistakes; ```` ```lrp broken ```` must be reported; ```` ```lrp faulty ````
-//! must go wrong while it runs. A fence ```` ```trace ```` after it tells lines of its run, in order, others left out, and what
-//! is done to it: `300 input ..`, `300 command ..`, `300 save OLD => NEW`;
+//! must go wrong while it runs; ```` ```lrp file NAME ```` is a file that programs after it on the page may import. A fence
+//! ```` ```trace ```` after it tells lines of its run, in order, others left out, and what is done to it: `300 input ..`,
+//! `300 command ..`, `300 save OLD => NEW`;
 //! ```` ```json ```` in docs/trace.md is a record a line.
 
 mod page;
@@ -25,8 +26,9 @@ fn every_example_does_what_the_page_says() {
 
 fn judge(example: &Example) -> Result<(), String> {
     let run = run::run(example).map_err(|why| format!("{}: {why}", example.place))?;
-    let (errors, faults) = (run.errors.join("\n"), run.faults.join("\n"));
+    let (errors, faults, remarks) = (run.errors.join("\n"), run.faults.join("\n"), run.remarks.join("\n"));
     match example.kind {
+        Kind::Sound if !remarks.is_empty() => return Err(format!("{}: {remarks}", example.place)),
         Kind::Sound if !errors.is_empty() || !faults.is_empty() => {
             return Err(format!("{}: {errors}\n{faults}", example.place));
         }
@@ -50,6 +52,7 @@ fn a_wrong_claim_is_found() {
         place: "here".to_string(),
         kind,
         text: program.to_string(),
+        files: Vec::new(),
         fed: Vec::new(),
         trace: claims.iter().map(ToString::to_string).collect(),
     };

@@ -247,6 +247,17 @@ fn a_held_edit_waits_for_a_person() {
 }
 
 #[test]
+fn a_held_edit_that_is_told_again_is_no_news() {
+    let mut story = Story::searching();
+    story.tell(held(None)).reject(&[("this `(` is never closed", "line_follower.lrp", 15)]);
+    story.at(84).tell(held(Some("active state follower/looking changed")));
+    let view = view_of(&story);
+    assert!(matches!(view.edit, Some(Edit::Rejected { .. })));
+    assert!(view.held.is_some_and(|held| held.restarts.is_some()));
+    assert!(newest(&view_of(&story), 1)[0].starts_with("not taken over"));
+}
+
+#[test]
 fn a_dropped_edit_is_forgotten() {
     let mut story = Story::searching();
     story.tell(held(None)).tell(What::Command { command: Command::DropHeld });

@@ -47,7 +47,18 @@ fn loaded(load: &Load) -> String {
     let reason = load.reason.as_ref().map(|reason| format!("; restarts: {reason}")).unwrap_or_default();
     assert_eq!(load.restarted, load.reason.is_some());
     let changes: String = load.changes.iter().map(changed).collect();
-    let findings: String = load.findings.iter().map(|it| format!("\n    {}", finding(it))).collect();
+    // What the checks find has a corpus of its own; here it matters whether anything runs, and which files are part of it.
+    let told = ["no-spawn", "import-cycle", "nothing-exported", "unknown-module"];
+    let findings = load.findings.iter().filter(|it| told.contains(&&*it.code));
+    let findings: String = findings
+        .map(|it| {
+            format!(
+                "
+    {}",
+                finding(it)
+            )
+        })
+        .collect();
     let machines = machines(&load.again, &load.discarded);
     format!("load{reason}{changes}{machines}{findings}")
 }
@@ -79,8 +90,13 @@ fn changed(change: &Change) -> String {
 /// `error unknown-state 3:7 message (help)`
 fn finding(finding: &Finding) -> String {
     let help = finding.help.as_ref().map(|help| format!(" ({help})")).unwrap_or_default();
-    let Finding { severity, code, message, line, column, .. } = finding;
-    format!("{severity} {code} {line}:{column} {message}{help}")
+    let Finding { severity, code, message, file, line, column, .. } = finding;
+    format!("{severity} {code} {}{line}:{column} {message}{help}", other(file, ":"))
+}
+
+/// The name of a file that isn't the program itself.
+fn other(file: &str, end: &str) -> String {
+    if file.is_empty() || file == "case.lrp" { String::new() } else { format!("{file}{end}") }
 }
 
 fn commanded(command: &Command) -> String {
@@ -115,12 +131,15 @@ fn transition(taken: &Taken) -> String {
 
 fn logged(log: &Log) -> String {
     let level = format!("{:?}", log.level).to_lowercase();
-    let place = if log.line > 0 { format!(" @{} line {}", log.state, log.line) } else { String::new() };
+    let place = match log.line {
+        0 => String::new(),
+        line => format!(" @{} {}line {line}", log.state, other(&log.file, " ")),
+    };
     format!("log {level} {:?}{place}", log.message)
 }
 
 fn failed(fault: &Fault) -> String {
     let help = fault.help.as_ref().map(|help| format!(" ({help})")).unwrap_or_default();
-    let Fault { code, message, line, column, state, count, .. } = fault;
-    format!("error {code} {line}:{column} @{state} x{count}: {message}{help}")
+    let Fault { code, message, file, line, column, state, count, .. } = fault;
+    format!("error {code} {}{line}:{column} @{state} x{count}: {message}{help}", other(file, ":"))
 }

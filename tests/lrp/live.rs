@@ -180,9 +180,9 @@ fn a_broken_world_is_told() {
 }
 
 #[test]
-fn a_required_file_is_live_unless_it_is_broken() {
+fn a_required_file_whose_name_is_made_up_is_live_unless_it_is_broken() {
     let folder = tempfile::tempdir().unwrap();
-    let program = "(machine m (state s (running [log.info(require('words').now)])))\n(spawn m s)\n";
+    let program = "(machine m (state s (running [log.info(require('wo' .. 'rds').now)])))\n(spawn m s)\n";
     write(folder.path(), "a.lrp", program);
     write(folder.path(), "words.lua", "return { now = 'first' }\n");
     let running = Running::start(folder.path(), &["a.lrp"]);

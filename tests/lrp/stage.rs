@@ -16,6 +16,7 @@ use lrp::ui::view::View;
 
 use crate::lines::line;
 use crate::picture;
+use crate::shelf::{Shelf, split as files_of};
 
 /// What happens at a moment of real time.
 #[derive(Clone, Debug)]
@@ -24,11 +25,19 @@ pub enum Event {
     Input(Input),
     /// The file is saved with this text.
     Save(String),
+    /// So is another one, or it is removed.
+    Write {
+        file: String,
+        text: Option<String>,
+    },
 }
 
 pub struct Stage {
     driver: Driver,
     compiler: Compiler,
+    files: Shelf,
+    /// The program's text as last saved.
+    text: String,
     /// Milliseconds between steps.
     period: f64,
     /// Program time of the last step, ms.
@@ -38,16 +47,17 @@ pub struct Stage {
 }
 
 impl Stage {
-    pub fn new(seed: u64, limit: Duration, modules: Vec<(String, String)>) -> Stage {
+    /// `files`: those beside the program, by name.
+    pub fn new(seed: u64, limit: Duration, files: Vec<(String, String)>) -> Stage {
         let options = Options { limits: Limits { time: limit, ..Limits::default() }, seed, ..Options::default() };
         let workshop = Workshop { folder: PathBuf::from("."), seed, robots: Robots::Fake };
         let mut driver = Driver::new(options, workshop);
-        driver.engine_mut().library(move |wanted| {
-            let found = modules.iter().find(|(name, _)| name == wanted);
-            found.map(|(_, text)| text.clone()).ok_or_else(|| format!("there is no module `{wanted}`"))
-        });
-        let compiler = Compiler::new(Vec::new());
-        Stage { driver, compiler, period: 100.0, now: 0.0, records: Vec::new(), view: View::new(10.0) }
+        let files = Shelf::of(files);
+        let library = files.clone();
+        driver.engine_mut().library(move |wanted| library.module(wanted));
+        let compiler = Compiler::new(Vec::new()).with_files(files.clone());
+        let (text, records) = (String::new(), Vec::new());
+        Stage { driver, compiler, files, text, period: 100.0, now: 0.0, records, view: View::new(10.0) }
     }
 
     pub fn engine(&self) -> &Engine {
@@ -58,6 +68,13 @@ impl Stage {
         match event {
             Event::Input(input) => self.driver.inject(input),
             Event::Save(text) => self.save(text),
+            Event::Write { file, text } => {
+                let is_there = text.is_some();
+                self.files.put(&file, text);
+                if is_there {
+                    self.save(self.text.clone());
+                }
+            }
             Event::Command(Command::Rate { hz }) => {
                 self.period = 1000.0 / hz;
                 self.command(Command::Rate { hz });
@@ -71,6 +88,7 @@ impl Stage {
     }
 
     fn save(&mut self, text: String) {
+        self.text.clone_from(&text);
         let running = self.driver.engine().program();
         let command = match self.compiler.compile_after(Source::new("case.lrp", text), running) {
             Ok(program) => Command::Load(Edit::of(running, program)),
@@ -126,6 +144,7 @@ pub struct Head {
     seed: u64,
     on_edit: OnEdit,
     limit: Duration,
+    /// Lua files, by module name.
     modules: Vec<(String, String)>,
     /// In the order written.
     events: Vec<(f64, Event)>,
@@ -165,16 +184,17 @@ impl Head {
     }
 
     /// Plays a text with what its head and `saves` say, in the order of their times.
-    pub fn play(self, text: &str, saves: Vec<(f64, String)>) -> Vec<Record> {
-        let mut stage = Stage::new(self.seed, self.limit, self.modules);
+    pub fn play(self, case: &str, saves: Vec<(f64, Event)>) -> Vec<Record> {
+        let (text, mut files) = files_of(case);
+        files.extend(self.modules.into_iter().map(|(name, text)| (format!("{name}.lua"), text)));
+        let mut stage = Stage::new(self.seed, self.limit, files);
         stage.period = 1000.0 / self.rate;
-        let saves = saves.into_iter().map(|(t, text)| (t, Event::Save(text)));
         let mut events: Vec<(f64, Event)> = self.events.into_iter().chain(saves).collect();
         events.sort_by(|a, b| a.0.total_cmp(&b.0));
         if self.on_edit != OnEdit::Restart {
             stage.command(Command::OnEdit { mode: self.on_edit });
         }
-        stage.event(Event::Save(text.into()));
+        stage.event(Event::Save(text));
         let mut events = events.into_iter().peekable();
         let mut real = 0.0;
         loop {

@@ -1,7 +1,10 @@
 //! The syntax layer: text in, tree and diagnostics out.
 
+pub mod any_block;
+pub mod any_text;
 mod corpus;
 mod dump;
+mod free_names;
 mod lua;
 mod properties;
 mod rendering;

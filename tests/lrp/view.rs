@@ -1,6 +1,6 @@
 //! The picture on the screen is the engine's, at any time; and whatever comes, the screen is drawn.
 
-use lrp::runtime::command::{BreakAt, Command};
+use lrp::runtime::command::{BreakAt, Command, OnEdit};
 use lrp::runtime::engine::{Engine, Options};
 use lrp::runtime::record::*;
 use lrp::runtime::time::Time;
@@ -171,10 +171,12 @@ fn deeds() -> impl Strategy<Value = Deed> {
     let jump = states.clone().prop_map(|state| Command::JumpTo { state: state.into() });
     let transition = states.prop_map(|state| Command::TransitionTo { state: state.into() });
     let set = (vars, -3i32..20).prop_map(|(var, value)| Command::Set { var: var.into(), value: value.to_string() });
-    let plain = prop::sample::select(vec![Command::Pause, Command::Resume, Command::Restart, Command::Runstop]);
+    let mut plain = vec![Command::Pause, Command::Resume, Command::Restart, Command::Runstop];
+    plain.extend([OnEdit::Keep, OnEdit::Restart].map(|mode| Command::OnEdit { mode }));
+    let plain = prop::sample::select(plain);
     prop_oneof![
         4 => (1u8..8).prop_map(Deed::Steps),
-        1 => (0..5usize).prop_map(Deed::Load),
+        1 => (0..7usize).prop_map(Deed::Load),
         2 => prop_oneof![jump, transition, set, plain].prop_map(Deed::Command),
     ]
 }
@@ -184,6 +186,12 @@ fn variant(which: usize) -> String {
         0 => NESTED.into(),
         1 => NESTED.replace("(state x)", "(state x) (state extra)"),
         2 => NESTED.replace("[limit]", "[limit + 1]"),
+        5 => NESTED.replace("inner", "deep").replace("count", "tally"),
+        6 => NESTED
+            .replace("(state x)", "(state z)")
+            .replace("eps x", "eps z")
+            .replace("y -> x", "y -> z")
+            .replace("other x", "other z"),
         3 => NESTED.replace("(machine other", "(var more := [1]) (machine other").replace("(spawn other x)", ""),
         _ => NESTED.replace("(running [count = count + 1])", "(running [count = count + 2])"),
     }

@@ -1,7 +1,7 @@
 //! Words of two programs made comparable: what they name is said in terms that both have in common.
 
 use std::borrow::Cow;
-use std::collections::HashMap;
+use std::collections::{HashMap, HashSet};
 
 use super::Matching;
 use crate::model::element::{ElementId, Kind};
@@ -33,8 +33,8 @@ pub(in crate::model) enum Key<'p> {
 pub(in crate::model) enum Reading<'a> {
     /// An element's text, by itself; with what is inside. Names given inside count as written.
     Body(&'a Inside),
-    /// The same, but for the names given inside.
-    Shape(&'a Inside),
+    /// The same, but of the names given inside only these count.
+    Shape(&'a Inside, &'a HashSet<(Kind, &'a str)>),
     /// A place that names this element.
     Use(ElementId),
     /// By the names that things have now.
@@ -108,10 +108,14 @@ impl<'p> Side<'p> {
             Word::Number(number) => Key::Number(number.to_bits()),
             Word::Names(kind, name, found) => self.named(matching, reading, (kind, name, found)),
             Word::Declares(element) => match reading {
-                Reading::Shape(_) => Key::Declares(element.kind),
+                Reading::Shape(_, counting) if !counting.contains(&self.label(element)) => Key::Declares(element.kind),
                 _ => Key::Called(element.kind, self.called(matching, reading, element)),
             },
         }
+    }
+
+    pub fn label(self, element: ElementId) -> (Kind, &'p str) {
+        (element.kind, self.program().name(element))
     }
 
     /// What a name given inside reads as.
@@ -136,10 +140,12 @@ impl<'p> Side<'p> {
             Reading::Current => return Key::Called(kind, self.name_now(matching, element).unwrap_or(name)),
             Reading::Use(subject) if subject == element => return Key::Subject(kind),
             Reading::Use(_) => {}
-            Reading::Body(inside) | Reading::Shape(inside) => match (inside.get(&element), reading) {
+            Reading::Body(inside) | Reading::Shape(inside, _) => match (inside.get(&element), reading) {
                 (Some(0), _) => return Key::Subject(kind),
-                (Some(_), Reading::Body(_)) => return Key::Called(kind, self.program().name(element)),
-                (Some(&place), _) => return Key::Inner(place),
+                (Some(&place), Reading::Shape(_, counting)) if !counting.contains(&self.label(element)) => {
+                    return Key::Inner(place);
+                }
+                (Some(_), _) => return Key::Called(kind, self.program().name(element)),
                 (None, _) => {}
             },
         }

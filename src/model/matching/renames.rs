@@ -43,38 +43,70 @@ pub(super) fn find(old: &Program, new: &Program, matching: &mut Matching, mut le
 }
 
 /// Pairs that have a body of which there is just one on either side: first among those whose names inside are the same,
-/// too, then among the others.
+/// too, then among the others, where names that only one side has don't count.
 fn same_bodies(old: &Program, new: &Program, matching: &Matching, left: &Left) -> Vec<Rename> {
-    let mut found: Vec<Rename> = Vec::new();
-    let (mut settled, mut settled_new): (HashSet<ElementId>, HashSet<ElementId>) = Default::default();
-    for as_written in [true, false] {
-        let mut bodies: HashMap<u64, (Vec<ElementId>, Vec<ElementId>)> = HashMap::new();
-        let hash = |side: Side, element: ElementId| {
+    let (before, after) = (Side::Old(old, new), Side::New(new));
+    let body = |side: Side, element| {
+        let inside = inside(side.program(), element);
+        hash(side, element, matching, Reading::Body(&inside))
+    };
+    let mut pairing = Pairing::default();
+    pairing.add(left, |gone| body(before, gone), |added| body(after, added));
+    let may_hold_names = left.gone.iter().any(|gone| matches!(gone.kind, Kind::Machine | Kind::State));
+    if may_hold_names && left.gone.iter().any(|gone| !pairing.settled_old.contains(gone)) {
+        let common: HashSet<_> =
+            names_inside(before, &left.gone).intersection(&names_inside(after, &left.new)).copied().collect();
+        let shape = |side: Side, element| {
             let inside = inside(side.program(), element);
-            let reading = if as_written { Reading::Body(&inside) } else { Reading::Shape(&inside) };
-            let mut hasher = DefaultHasher::new();
-            side.keys(matching, reading, |words| words.element(element)).hash(&mut hasher);
-            hasher.finish()
+            hash(side, element, matching, Reading::Shape(&inside, &common))
         };
-        for &gone in left.gone.iter().filter(|gone| !settled.contains(gone)) {
-            bodies.entry(hash(Side::Old(old, new), gone)).or_default().0.push(gone);
+        pairing.add(left, |gone| shape(before, gone), |added| shape(after, added));
+    }
+    pairing.found
+}
+
+#[derive(Default)]
+struct Pairing {
+    found: Vec<Rename>,
+    /// What was one of those with the same body, whether that made a pair or a doubt.
+    settled_old: HashSet<ElementId>,
+    settled_new: HashSet<ElementId>,
+}
+
+impl Pairing {
+    fn add(&mut self, left: &Left, old: impl Fn(ElementId) -> u64, new: impl Fn(ElementId) -> u64) {
+        let mut bodies: HashMap<u64, (Vec<ElementId>, Vec<ElementId>)> = HashMap::new();
+        for &gone in left.gone.iter().filter(|gone| !self.settled_old.contains(gone)) {
+            bodies.entry(old(gone)).or_default().0.push(gone);
         }
-        for &added in left.new.iter().filter(|added| !settled_new.contains(added)) {
-            bodies.entry(hash(Side::New(new), added)).or_default().1.push(added);
+        for &added in left.new.iter().filter(|added| !self.settled_new.contains(added)) {
+            bodies.entry(new(added)).or_default().1.push(added);
         }
         for (gone, added) in bodies.into_values().filter(|(gone, added)| !gone.is_empty() && !added.is_empty()) {
-            settled.extend(&gone);
-            settled_new.extend(&added);
             if let ([was], [now]) = (&*gone, &*added) {
-                found.push((*was, *now));
+                self.found.push((*was, *now));
             }
-        }
-        let has_names_inside = left.gone.iter().any(|gone| matches!(gone.kind, Kind::Machine | Kind::State));
-        if !has_names_inside {
-            break;
+            self.settled_old.extend(gone);
+            self.settled_new.extend(added);
         }
     }
-    found
+}
+
+fn hash(side: Side, element: ElementId, matching: &Matching, reading: Reading) -> u64 {
+    let mut hasher = DefaultHasher::new();
+    side.keys(matching, reading, |words| words.element(element)).hash(&mut hasher);
+    hasher.finish()
+}
+
+/// The names given inside of any of the elements.
+fn names_inside<'p>(side: Side<'p>, elements: &[ElementId]) -> HashSet<(Kind, &'p str)> {
+    let mut names = HashSet::new();
+    for &element in elements {
+        scopes::inside(side.program(), element, &mut |inner| {
+            names.insert(side.label(inner));
+        });
+    }
+    names
 }
 
 /// Whether what is written in two elements is the same, by the names that things have now.

@@ -53,7 +53,7 @@ impl Engine {
         let anew = |machine| verdict.again.iter().any(|again| again.machine == machine);
         let wanted = alive.into_iter().filter(|&var| found[var.index()] && !new[var].machine.is_some_and(anew));
         let (globals, locals): (Vec<VarId>, Vec<VarId>) = wanted.partition(|&var| new[var].machine.is_none());
-        globals.into_iter().chain(locals).collect()
+        new.globals.iter().copied().filter(|var| globals.contains(var)).chain(locals).collect()
     }
 
     /// It has its place among the running machines already.

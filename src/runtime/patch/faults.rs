@@ -5,6 +5,8 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 use super::{Passage, Verdict};
+use crate::model::diff::{same_modules, same_spawn};
+use crate::model::renamed::{code_now, place_now};
 use crate::model::*;
 use crate::runtime::engine::Engine;
 use crate::runtime::faults::Moved;
@@ -83,15 +85,19 @@ impl<'p> Places<'p> {
         let around = old[was].span;
         let inside = around.file == span.file && span.end <= around.end;
         let now = if inside { self.passage.block(was)? } else { return None };
-        let start = (new[now].span.start + (span.start - around.start)) as usize;
-        let span = Span::new(new[now].span.file, start, start + (span.end - span.start) as usize);
+        let home = new[now].span;
+        let place = |at: u32| {
+            let inside = place_now(&old[was].code, &new[now].code, (at - around.start) as usize);
+            home.start as usize + inside
+        };
+        let span = Span::new(home.file, place(span.start), place(span.end));
         Some(Moved { span, source: new.source(span).clone(), state: new.owner_path(now) })
     }
 
     fn spawn_moved(&self, span: Span) -> Option<Moved> {
-        let Passage { new, matching, .. } = self.passage;
+        let Passage { old, new, matching } = self.passage;
         let &(state, was) = self.spawns.get(&span)?;
-        let same = |it: &&Spawn| it.machine_name == was.machine_name && it.state_name == was.state_name;
+        let same = |it: &&Spawn| same_spawn(old, was, new, it, matching);
         let (now, path) = match state {
             None => (new.spawns.iter().find(same)?, Arc::default()),
             Some(state) => {
@@ -104,12 +110,18 @@ impl<'p> Places<'p> {
 }
 
 impl Passage<'_> {
-    /// The new block that reads the same in the same element: of equal ones there, the first stays the first.
+    /// The new block that reads the same in the same element, but for renamed variables: of equal ones there, the first
+    /// stays the first.
     fn block(&self, was: BlockId) -> Option<BlockId> {
         let (before, after) = self.homes(self.old[was].owner)?;
-        let same = |program: &Program, block: &BlockId| program[*block].code == self.old[was].code;
-        let nth = before.into_iter().filter(|block| same(self.old, block)).position(|block| block == was)?;
-        after.into_iter().filter(|block| same(self.new, block)).nth(nth)
+        let Block { code, requires, .. } = &self.old[was];
+        let renamed = code_now(self.old, was, self.new, self.matching);
+        let nth = before.into_iter().filter(|&block| self.old[block].code == *code).position(|block| block == was)?;
+        let same = |block: &BlockId| {
+            let now = &self.new[*block];
+            [code, &renamed].contains(&&now.code) && same_modules(self.old, requires, self.new, &now.requires)
+        };
+        after.into_iter().filter(same).nth(nth)
     }
 
     /// All blocks of an element, old and new; for a transition, of all those of its machine.

@@ -34,6 +34,7 @@ impl Engine {
         let first = old.sources.is_empty();
         let verdict = self.verdict(&Passage { old: &old, new: &new, matching });
         let ended = self.follow(&Passage { old: &old, new: &new, matching }, &verdict);
+        self.take_over_modules(&old, &new);
         self.compile(&old, &mut new, matching);
         let passage = Passage { old: &old, new: &new, matching };
         let still = self.faults_that_stand(&passage);

@@ -1,18 +1,17 @@
 //! A test's program and its files, as the functions of `t` handle them. Knows no program until the test loads one.
 
 use std::cell::RefCell;
-use std::collections::HashMap;
 use std::path::{Path, PathBuf};
-use std::rc::Rc;
 
 use mlua::Table;
 
-use super::bench::{Bench, Library, Setting};
+use super::bench::{Bench, Setting};
 use super::deadline::Deadline;
 use super::failure::Complaint;
 use super::options::Options;
+use super::written::Written;
 use crate::runtime::Command;
-use crate::session::{loader, modules};
+use crate::session::files::Files;
 use crate::syntax::Source;
 
 pub struct Api {
@@ -27,8 +26,6 @@ pub struct Api {
     pub told: RefCell<Vec<(String, mlua::Value)>>,
 }
 
-type Written = Rc<RefCell<HashMap<PathBuf, String>>>;
-
 impl Api {
     /// `folder`: the test file's, from which it names files.
     pub fn new(folder: &Path, deadline: Deadline) -> Api {
@@ -37,7 +34,7 @@ impl Api {
             deadline,
             bench: RefCell::default(),
             program: RefCell::default(),
-            written: Rc::default(),
+            written: Written::default(),
             told: RefCell::default(),
         }
     }
@@ -60,13 +57,10 @@ impl Api {
     /// Begins anew with the program of a file.
     pub fn load(&self, file: &str, options: Option<&Table>) -> Result<(), Complaint> {
         let path = self.folder.join(file);
-        let written = self.written.borrow().get(&path).cloned();
-        let source = match written {
-            Some(text) => Source::new(path.display().to_string(), text),
-            None => loader::read(&path).map_err(|why| Complaint::new(why.to_string()))?,
-        };
+        let files = self.written.clone();
+        let source = files.read(&path).map_err(|why| Complaint::new(why.to_string()))?;
         let folder = path.parent().unwrap_or(&self.folder).to_path_buf();
-        self.start(source, folder, options)?;
+        self.start(source, files, folder, options)?;
         *self.program.borrow_mut() = Some(path);
         Ok(())
     }
@@ -74,35 +68,31 @@ impl Api {
     /// Begins anew with a program's text, as if it were a file beside the test.
     pub fn source(&self, text: String, options: Option<&Table>) -> Result<(), Complaint> {
         self.program.take();
-        self.start(Source::new("program.lrp", text), self.folder.clone(), options)
+        let files = self.written.seen_from(&self.folder);
+        self.start(Source::new("program.lrp", text), files, self.folder.clone(), options)
     }
 
-    fn start(&self, file: Source, folder: PathBuf, options: Option<&Table>) -> Result<(), Complaint> {
+    fn start(&self, file: Source, files: Written, folder: PathBuf, options: Option<&Table>) -> Result<(), Complaint> {
         self.bench.take();
         self.told.take();
         let options = Options::read(options)?;
-        let library = library(Rc::clone(&self.written), folder.clone());
-        let setting = Setting { file, folder, test_folder: self.folder.clone(), library };
+        let library = self.written.library(folder.clone());
+        let setting = Setting { file, files, folder, test_folder: self.folder.clone(), library };
         *self.bench.borrow_mut() = Some(Bench::start(setting, &options, self.deadline.clone())?);
         Ok(())
     }
 
-    /// Puts a text in the place of a file: of the program, which is an edit of it, or of a Lua file that it will require.
+    /// Puts a text in the place of a file. Of the program, or of a file that it imports or requires, that is an edit.
     pub fn write(&self, file: &str, text: String) -> Result<(), Complaint> {
         let path = self.folder.join(file);
-        self.written.borrow_mut().insert(path.clone(), text.clone());
-        match self.program.borrow().as_ref() == Some(&path) {
-            true => self.with(|bench| bench.edit(text)),
-            false => Ok(()),
+        self.written.put(&path, &text);
+        let same = |other: &Path| self.written.canonical(other) == self.written.canonical(&path);
+        if self.program.borrow().as_deref().is_some_and(same) {
+            return self.with(|bench| bench.edit(text));
+        }
+        match self.bench.borrow_mut().as_mut() {
+            Some(bench) => bench.file_changed(&path),
+            None => Ok(()),
         }
     }
-}
-
-fn library(written: Written, folder: PathBuf) -> Library {
-    let disk = modules::library(folder.clone(), |_, _| ());
-    Box::new(move |module| {
-        let path = folder.join(module.replace('.', "/")).with_extension("lua");
-        let text = written.borrow().get(&path).cloned();
-        text.map_or_else(|| disk(module), Ok)
-    })
 }

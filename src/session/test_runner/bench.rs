@@ -1,7 +1,7 @@
 //! A program on the test bench: an engine with its robots, stepped in virtual time, and everything it told. Knows nothing of the
 //! language that tests are written in.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
 use serde_json::Value;
@@ -11,11 +11,13 @@ use super::failure::{Complaint, Situation};
 use super::message::{self, Direction, hint};
 use super::options::Options;
 use super::readable;
+use super::written::Written;
 use crate::model::{Description, Edit, Program, Robot};
 use crate::runtime::record::{Breakpoint, Fault, Finding, Held};
 use crate::runtime::{self, Command, Input, Record, Time, What};
 use crate::session::compile::{Compiler, Rejected};
 use crate::session::driver::Driver;
+use crate::session::files::{Disk, Files};
 use crate::session::findings;
 use crate::session::pace::Pace;
 use crate::session::robots::{self, Robots, Workshop};
@@ -25,6 +27,7 @@ use crate::syntax::{Code, Diagnostic, Source};
 pub struct Bench {
     driver: Driver,
     compiler: Compiler,
+    files: Written,
     /// Takes the place of the one in the program's bridge forms.
     world: Option<PathBuf>,
     file: Source,
@@ -43,6 +46,8 @@ pub type Library = Box<dyn Fn(&str) -> Result<String, String>>;
 /// Where a program's text comes from, and what it finds beside itself.
 pub struct Setting {
     pub file: Source,
+    /// What it may import and require.
+    pub files: Written,
     /// The program's own folder.
     pub folder: PathBuf,
     /// The test's, from which it names worlds.
@@ -62,18 +67,18 @@ pub struct Trouble {
 impl Bench {
     /// A program at time 0, with everything spawned.
     pub fn start(setting: Setting, options: &Options, deadline: Deadline) -> Result<Bench, Complaint> {
-        let Setting { file, folder, test_folder, library } = setting;
+        let Setting { file, files, folder, test_folder, library } = setting;
         // The program names worlds as seen from its own folder.
         let world = options.world.as_ref().map(|world| match folder == test_folder {
             true => PathBuf::from(world),
             false => std::path::absolute(test_folder.join(world)).unwrap_or_else(|_| world.into()),
         });
-        let mut compiler = Compiler::new(Vec::new());
+        let mut compiler = Compiler::new(Vec::new()).with_files(files.clone());
         let mut program = compiler.compile(file.clone()).map_err(|rejected| broken(&rejected))?;
         if let Some(chosen) = &options.bridge
             && let robots @ [_, ..] = &*replaced(&program, chosen)
         {
-            compiler = Compiler::new(robots.to_vec());
+            compiler = Compiler::new(robots.to_vec()).with_files(files.clone());
             program = compiler.compile(file.clone()).map_err(|rejected| broken(&rejected))?;
         }
         let robots = if options.bridge.is_some() { Robots::AsProgrammed } else { Robots::Fake };
@@ -84,8 +89,8 @@ impl Bench {
         driver.engine_mut().library(library);
         let mut pace = Pace::new(options.rate, std::time::Duration::ZERO);
         let due = pace.make();
-        let mut bench =
-            Bench { driver, compiler, world, file, pace, due, clock: Time::ZERO, records: Vec::new(), deadline };
+        let (clock, records) = (Time::ZERO, Vec::new());
+        let mut bench = Bench { driver, compiler, files, world, file, pace, due, clock, records, deadline };
         bench.load(program)?;
         bench.missing_robots()?;
         Ok(bench)
@@ -127,6 +132,17 @@ impl Bench {
             Err(Rejected { sources, diagnostics }) => {
                 self.command(Command::Reject { findings: findings::errors_first(&diagnostics, &sources) })
             }
+        }
+    }
+
+    /// Another text in the place of a file other than the program's own.
+    pub fn file_changed(&mut self, path: &Path) -> Result<(), Complaint> {
+        let changed = Disk.canonical(path);
+        let is_part = self.compiler.reached().iter().any(|file| self.files.canonical(&file.path) == changed);
+        match path.extension() {
+            _ if is_part => self.edit(self.file.text.to_string()),
+            Some(lua) if lua == "lua" => self.command(Command::FileChanged { file: path.display().to_string() }),
+            _ => Ok(()),
         }
     }
 

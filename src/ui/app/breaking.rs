@@ -135,6 +135,8 @@ impl App {
         if is_own_doing(reason) {
             return;
         }
+        // It would cover the reason.
+        self.moment = None;
         if let Some(at) = at.filter(|at| self.program().is_some_and(|program| tree::element(program, at).is_some())) {
             self.select(at.clone());
         }

@@ -17,22 +17,19 @@ pub fn lines(app: &App, width: u16) -> Vec<(Tone, String)> {
     let Some(held) = &app.view().held else { return Vec::new() };
     let room = width.saturating_sub(4);
     let outcome = Outcome::of_held(held);
+    let effects: Vec<_> = outcome.changes.iter().map(|change| (change, effect(app, &outcome, change))).collect();
     let mut lines = Vec::new();
-    let effects = would(&outcome);
-    if effects.is_empty() {
-        lines.push((Tone::Heading, "nothing that runs is disturbed".into()));
+    for sentence in would(&outcome, effects.iter().any(|(_, effect)| effect.is_some())) {
+        lines.extend(format::wrap(&sentence, room).into_iter().map(|line| (Tone::Heading, line)));
     }
-    for effect in effects {
-        lines.extend(format::wrap(&effect, room).into_iter().map(|line| (Tone::Heading, line)));
-    }
-    for change in &outcome.changes {
-        let (text, effect) = (describe(change), effect(&outcome, change));
-        match effect {
-            _ if format::width(&text) + format::width(&effect) + 4 <= room => {
-                lines.push((Tone::Text, format!("{text}    {effect}")));
+    for (change, effect) in effects {
+        let effect = effect.unwrap_or_else(|| undisturbed(change).into());
+        lines.extend(format::wrap(&describe(change), room).into_iter().map(|line| (Tone::Text, line)));
+        match lines.last_mut() {
+            Some((_, last)) if format::width(last) + format::width(&effect) + 4 <= room => {
+                *last += &format!("    {effect}");
             }
-            effect => {
-                lines.extend(format::wrap(&text, room).into_iter().map(|line| (Tone::Text, line)));
+            _ => {
                 let wrapped = format::wrap(&effect, room.saturating_sub(2));
                 lines.extend(wrapped.into_iter().map(|line| (Tone::Aside, format!("  {line}"))));
             }
@@ -46,10 +43,12 @@ pub fn lines(app: &App, width: u16) -> Vec<(Tone, String)> {
     lines
 }
 
-/// What it would do to what runs, on the whole.
-fn would(outcome: &Outcome) -> Vec<String> {
-    let told = outcome.changes.iter().any(|change| outcome.effect_of(change).is_some());
-    let restarts = outcome.restarted.iter().map(|reason| match told {
+/// What it would do to what runs, on the whole. Why, where that isn't told with one of the changes.
+fn would(outcome: &Outcome, is_told: bool) -> Vec<String> {
+    if !outcome.disturbs() {
+        return vec!["nothing that runs is disturbed".into()];
+    }
+    let restarts = outcome.restarted.iter().map(|reason| match is_told {
         true => "the program begins again".to_string(),
         false => format!("the program begins again: {reason}"),
     });
@@ -58,12 +57,15 @@ fn would(outcome: &Outcome) -> Vec<String> {
     restarts.chain(again).chain(ends).collect()
 }
 
-fn effect(outcome: &Outcome, change: &Change) -> String {
-    let undisturbed = match (change.kind, change.op) {
+fn effect(app: &App, outcome: &Outcome, change: &Change) -> Option<String> {
+    outcome.effect_of(change, |state| app.view().is_active(state))
+}
+
+fn undisturbed(change: &Change) -> &'static str {
+    match (change.kind, change.op) {
         (Element::Variable, Op::Changed) => "takes its new value",
         _ => "nothing is disturbed",
-    };
-    outcome.effect_of(change).unwrap_or_else(|| undisturbed.into())
+    }
 }
 
 pub fn draw(app: &App, top: usize, area: Rect, buffer: &mut Buffer) {

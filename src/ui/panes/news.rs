@@ -7,10 +7,10 @@ use ratatui::style::Style;
 use crate::ui::app::App;
 use crate::ui::format;
 use crate::ui::pen::Pen;
-use crate::ui::view::{Outcome, describe, name};
+use crate::ui::view::{Outcome, describe_shortly, name};
 
 /// More changes than these are counted.
-const TOLD: usize = 5;
+const TOLD: usize = 3;
 
 /// `place`: the log, or what there is instead of it. The log says the same in short, so it is what may be covered.
 pub fn draw(app: &App, place: Rect, buffer: &mut Buffer) {
@@ -36,7 +36,9 @@ fn lines(app: &App, outcome: &Outcome, room: u16) -> Vec<(String, Style)> {
     if !outcome.disturbs() {
         add("nothing that runs is disturbed", theme.dim());
     }
-    outcome.changes.iter().take(TOLD).for_each(|change| add(&describe(change), theme.normal()));
+    for change in outcome.changes.iter().take(TOLD) {
+        add(&format::fit(&describe_shortly(change), room), theme.normal());
+    }
     if let Some(more @ 1..) = outcome.changes.len().checked_sub(TOLD) {
         add(&format!("and {more} more"), theme.dim());
     }

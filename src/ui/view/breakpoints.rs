@@ -30,8 +30,9 @@ impl View {
 /// A transition as breakpoints and lists of changes name it: equal ones are told apart by their order.
 pub fn transition_text(program: &Program, id: TransitionId) -> String {
     let key = transition_key(program, &program[id]);
-    let before = program.transitions[..id.index()].iter();
-    match before.filter(|other| transition_key(program, other) == key).count() {
+    let siblings = program[program[id].machine].transitions.iter();
+    let before = siblings.take_while(|&&other| other != id);
+    match before.filter(|&&other| transition_key(program, &program[other]) == key).count() {
         0 => key,
         equal => format!("{key} #{}", equal + 1),
     }

@@ -1,6 +1,6 @@
 //! The outcome of a save: in the few words that fit the status line, and line by line.
 
-use super::{Path, name};
+use super::{Path, name, owner};
 use crate::runtime::record::{Change, Element, Finding, Held, Load, Op};
 use crate::ui::format;
 
@@ -106,13 +106,14 @@ impl Outcome {
     }
 
     /// What one of its changes does to what runs, `restarts: active state looking changed`; none where nothing is disturbed.
-    pub fn effect_of(&self, change: &Change) -> Option<String> {
+    /// `is_active`: of a state's path.
+    pub fn effect_of(&self, change: &Change, is_active: impl Fn(&str) -> bool) -> Option<String> {
         let reason = self.restarted.as_ref().filter(|reason| reason.split(' ').any(|word| *word == *change.path));
         if let Some(reason) = reason {
             return Some(format!("restarts: {}", reason.replace(&*change.path, name(&change.path))));
         }
         let concerned = |machine: &&Path| match change.kind {
-            Element::State => super::owner(&change.path) == Some(machine),
+            Element::State => owner(&change.path) == Some(machine) && is_active(&change.path),
             Element::Machine => change.path == **machine,
             _ => false,
         };
@@ -124,6 +125,15 @@ impl Outcome {
 
 /// `added state follower/a`, `renamed state follower/looking to searching`
 pub fn describe(change: &Change) -> String {
+    sentence(change, &change.path)
+}
+
+/// `added state a`
+pub fn describe_shortly(change: &Change) -> String {
+    sentence(change, short_name(change))
+}
+
+fn sentence(change: &Change, called: &str) -> String {
     let verb = match change.op {
         Op::Added => "added",
         Op::Removed => "removed",
@@ -131,7 +141,7 @@ pub fn describe(change: &Change) -> String {
         Op::Renamed => "renamed",
     };
     let to = change.to.as_ref().map_or(String::new(), |to| format!(" to {}", name(to)));
-    format!("{verb} {} {}{to}", noun(change.kind), change.path)
+    format!("{verb} {} {called}{to}", noun(change.kind))
 }
 
 /// Columns up to which one change is named.

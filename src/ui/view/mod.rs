@@ -23,7 +23,7 @@ use serde_json::Value;
 
 pub use breakpoints::transition_text;
 pub use bridge::{Bridge, Message};
-pub use edit::{Edit, Outcome, describe};
+pub use edit::{Edit, Outcome, describe, describe_shortly};
 pub use journal::{Cause, Entry, Journal, Kind};
 pub use machine::{Machine, State, Timeout, Which};
 pub use mode::{Choices, Mode, is_own_doing};

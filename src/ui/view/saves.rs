@@ -48,13 +48,14 @@ impl View {
         self.program = Some(program.clone());
     }
 
+    /// Told again where it would do something else now: that is no news of a save.
     pub(super) fn hold(&mut self, held: &Held) {
-        let edit = Edit::Held { changes: Outcome::of_held(held).summary() };
-        // Told again, as it would do something else now.
-        if self.edit.as_ref() != Some(&edit) {
+        let known = self.held.as_ref().is_some_and(|before| before.changes == held.changes);
+        if !known {
+            let edit = Edit::Held { changes: Outcome::of_held(held).summary() };
             self.note_edit(&edit);
+            self.edit = Some(edit);
         }
-        self.edit = Some(edit);
         self.held = Some(held.clone());
     }
 

@@ -7,6 +7,8 @@ pub struct Example {
     pub place: String,
     pub kind: Kind,
     pub text: String,
+    /// What it may import: the files shown before it on its page, by name.
+    pub files: Vec<(String, String)>,
     /// Lines of its trace that say what happens to the program: an input, a command, a save.
     pub fed: Vec<String>,
     /// Lines of its trace that say what it does.
@@ -70,11 +72,22 @@ pub fn examples() -> Vec<Example> {
     for page in pages() {
         // A trace belongs to the program right before it.
         let mut follows = false;
+        let mut files: Vec<(String, String)> = Vec::new();
         for fence in fences(&page) {
+            if let Some(name) = fence.info.strip_prefix("lrp file ") {
+                files.push((name.to_string(), fence.text));
+                follows = false;
+                continue;
+            }
             let kind = match fence.info.as_str() {
                 "lrp" => Some(Kind::Sound),
                 "lrp broken" => Some(Kind::Broken),
                 "lrp faulty" => Some(Kind::Faulty),
+                // In docs/codes.md, with a test of their own.
+                "lrp wrong" => {
+                    follows = false;
+                    continue;
+                }
                 "trace" => None,
                 info => {
                     assert!(!info.starts_with("lrp"), "{}: no such fence: {info}", fence.place);
@@ -87,6 +100,7 @@ pub fn examples() -> Vec<Example> {
                     place: fence.place,
                     kind,
                     text: fence.text,
+                    files: files.clone(),
                     fed: Vec::new(),
                     trace: Vec::new(),
                 }),

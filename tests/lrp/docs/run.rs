@@ -10,6 +10,7 @@ use lrp::session::robots::{Robots, Workshop};
 use lrp::syntax::{Diagnostic, Source};
 
 use super::page::Example;
+use crate::shelf::Shelf;
 
 const PERIOD_MS: u64 = 100;
 const STEPS: u64 = 50;
@@ -18,6 +19,8 @@ const STEPS: u64 = 50;
 pub struct Run {
     /// What was wrong before it ran.
     pub errors: Vec<String>,
+    /// What else the checks said.
+    pub remarks: Vec<String>,
     pub faults: Vec<String>,
     /// `500 enter esc/tock`
     pub lines: Vec<String>,
@@ -39,11 +42,11 @@ pub fn run(example: &Example) -> Result<Run, String> {
         feeds.read(line).ok_or_else(|| format!("`{line}` can't be read"))?;
     }
     let mut text = example.text.clone();
-    let program = match compile(&text) {
+    let program = match compile(&text, &example.files, &Program::default()) {
         Ok(program) => program,
         Err(Rejected { diagnostics, .. }) => return Ok(Run { errors: errors(&diagnostics), ..Run::default() }),
     };
-    let mut run = Run { errors: errors(&program.findings), ..Run::default() };
+    let mut run = Run { errors: errors(&program.findings), remarks: remarks(&program.findings), ..Run::default() };
     let workshop = Workshop { folder: PathBuf::new(), seed: 1, robots: Robots::Fake };
     let mut driver = Driver::new(Options::default(), workshop);
     let mut see = |record: Record| run.see(&record);
@@ -62,15 +65,17 @@ pub fn run(example: &Example) -> Result<Run, String> {
         }
         for (_, (old, new)) in feeds.saves.extract_if(.., |(at, _)| *at <= now) {
             text = replaced(&text, &old, &new)?;
-            let program = compile(&text).map_err(|rejected| errors(&rejected.diagnostics).join("\n"))?;
+            let program = compile(&text, &example.files, driver.engine().program())
+                .map_err(|rejected| errors(&rejected.diagnostics).join("\n"))?;
             driver.command(Command::Load(program.into()), &mut see).map_err(refused)?;
         }
     }
     Ok(run)
 }
 
-fn compile(text: &str) -> Result<Program, Rejected> {
-    Compiler::new(Vec::new()).compile(Source::new("example.lrp", text))
+fn compile(text: &str, files: &[(String, String)], running: &Program) -> Result<Program, Rejected> {
+    let files = Shelf::of(files.to_vec());
+    Compiler::new(Vec::new()).with_files(files).compile_after(Source::new("example.lrp", text), running)
 }
 
 fn replaced(text: &str, old: &str, new: &str) -> Result<String, String> {
@@ -81,8 +86,15 @@ fn replaced(text: &str, old: &str, new: &str) -> Result<String, String> {
 }
 
 fn errors(diagnostics: &[Diagnostic]) -> Vec<String> {
-    let errors = diagnostics.iter().filter(|diagnostic| diagnostic.is_error());
-    errors.map(|diagnostic| format!("error[{}]: {}", diagnostic.code.name(), diagnostic.message)).collect()
+    diagnostics.iter().filter(|diagnostic| diagnostic.is_error()).map(|error| told("error", error)).collect()
+}
+
+fn remarks(diagnostics: &[Diagnostic]) -> Vec<String> {
+    diagnostics.iter().filter(|diagnostic| !diagnostic.is_error()).map(|remark| told("remark", remark)).collect()
+}
+
+fn told(kind: &str, diagnostic: &Diagnostic) -> String {
+    format!("{kind}[{}]: {}", diagnostic.code.name(), diagnostic.message)
 }
 
 impl Feeds {

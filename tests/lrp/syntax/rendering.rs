@@ -42,7 +42,7 @@ fn a_byte_order_mark_takes_no_column() {
 fn several_diagnostics_come_in_the_order_of_the_program() {
     let sources = [source("(machine m)\n(spawn n s)\n"), Source::new("b.lrp", "(machine n)\n")];
     let diagnostics = [
-        Diagnostic::hint(Code::NoMessageYet, span(1, 0, 1), "third"),
+        Diagnostic::hint(Code::UnusedEvent, span(1, 0, 1), "third"),
         Diagnostic::warning(Code::NoSpawn, span(0, 19, 20), "second").help("do this"),
         Diagnostic::error(Code::UnknownMachine, span(0, 12, 18), "first").also(span(1, 9, 10), "nearly this"),
     ];
@@ -66,7 +66,7 @@ warning[no-spawn]: second
   |
   = help: do this
 
-hint[no-message-yet]: third
+hint[unused-event]: third
  --> b.lrp:1:1
   |
 1 | (machine n)

@@ -6,6 +6,7 @@ mod kept;
 use std::sync::Arc;
 use std::time::Duration;
 
+use lrp::model::Program;
 use lrp::runtime::record::{Change, Held, Load, Op};
 use lrp::runtime::{BreakAt, Breaking, Command, Engine, Input, OnEdit, OnError, Record, Saves, What};
 use lrp::session::compile::Compiler;
@@ -26,7 +27,7 @@ struct Walk {
     held: Option<Held>,
 }
 
-fn walk(numbers: &[u32]) -> Result<(), String> {
+pub fn walk(numbers: &[u32]) -> Result<(), String> {
     let choices = &mut Choices::new(numbers);
     let (mut plot, mut other) = (Plot::draw(choices), Plot::draw(choices));
     let mut walk = Walk { stage: Stage::new(1, Duration::from_secs(5), Vec::new()), mode: OnEdit::Restart, held: None };
@@ -209,18 +210,19 @@ fn event(choices: &mut Choices, engine: &Engine) -> Event {
 fn reads_back(records: &[Record], view: &View) -> Result<(), String> {
     let mut again = View::new(10.0);
     let mut compiler = Compiler::new(Vec::new());
-    let mut last = Arc::default();
+    // What names mean can depend on the program before.
+    let mut running: Arc<Program> = Arc::default();
     for record in records {
         let line = serde_json::to_string(record).map_err(|error| error.to_string())?;
         let mut read: Record = serde_json::from_str(&line).map_err(|error| format!("{error}: {line}"))?;
         if let (What::Load(read), What::Load(load)) = (&mut read.what, &record.what) {
             let file = &read.files[0];
-            let program = compiler.compile_after(Source::new(file.name.clone(), file.text.clone()), &last);
+            let program = compiler.compile_after(Source::new(file.name.clone(), file.text.clone()), &running);
             read.program = program.ok().map(Arc::new);
-            last = read.program.clone().unwrap_or_default();
             if read.program != load.program {
                 return Err(format!("the program differs: {line}"));
             }
+            running = read.program.clone().unwrap_or_default();
         }
         if read != *record {
             return Err(format!("read back as {read:?}: {line}"));

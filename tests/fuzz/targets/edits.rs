@@ -1,0 +1,25 @@
+//! Random programs, edits, steps and commands, drawn from the bytes.
+#![no_main]
+
+#[path = "../../lrp/lines.rs"]
+mod lines;
+#[path = "../../lrp/picture.rs"]
+mod picture;
+#[path = "../../lrp/plot/mod.rs"]
+mod plot;
+#[path = "../../lrp/shelf.rs"]
+mod shelf;
+#[path = "../../lrp/stage.rs"]
+mod stage;
+#[path = "../../lrp/walk/mod.rs"]
+mod walk;
+
+use libfuzzer_sys::fuzz_target;
+
+fuzz_target!(|bytes: &[u8]| {
+    // A byte is choice enough.
+    let numbers: Vec<u32> = bytes.iter().map(|&byte| u32::from(byte)).collect();
+    if let Err(wrong) = walk::walk(&numbers) {
+        panic!("{wrong}");
+    }
+});
