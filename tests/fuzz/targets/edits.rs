@@ -5,11 +5,13 @@
 mod lines;
 #[path = "../../lrp/picture.rs"]
 mod picture;
-#[path = "../../lrp/plot.rs"]
+#[path = "../../lrp/plot/mod.rs"]
 mod plot;
+#[path = "../../lrp/shelf.rs"]
+mod shelf;
 #[path = "../../lrp/stage.rs"]
 mod stage;
-#[path = "../../lrp/walk.rs"]
+#[path = "../../lrp/walk/mod.rs"]
 mod walk;
 
 use libfuzzer_sys::fuzz_target;

@@ -1,7 +1,13 @@
 //! Random programs as data: drawn from a row of numbers, changed a little, written as text. Names are never used twice
 //! in a program, so an edit can't turn one thing into another by accident.
 
+mod change;
+mod rename;
+mod words;
+
 use std::fmt::Write;
+
+use words::{action, condition, exit, expression, transition};
 
 /// Numbers to choose by; at the end of the row it is always the first choice.
 pub struct Choices<'a> {
@@ -34,6 +40,10 @@ pub struct Plot {
     machines: Vec<Machine>,
     /// Machine and state.
     spawns: Vec<(String, String)>,
+    onpause: Option<String>,
+    onresume: Option<String>,
+    /// Renamed where it is declared, not yet where it is used: the old name, and the new one.
+    halfway: Option<(String, String)>,
     names: usize,
 }
 
@@ -60,6 +70,8 @@ struct State {
     running: Vec<String>,
     onexit: Vec<String>,
     machines: Vec<Machine>,
+    /// The program pauses where it is entered.
+    breaks: bool,
 }
 
 impl Plot {
@@ -71,6 +83,11 @@ impl Plot {
         }
         for _ in 0..1 + choices.below(2) {
             plot.add_machine(choices);
+        }
+        for which in [&mut plot.onpause, &mut plot.onresume] {
+            if choices.below(4) == 0 {
+                *which = Some(action(choices, &[]));
+            }
         }
         plot
     }
@@ -133,73 +150,18 @@ impl Plot {
                 state.onentry.push(format!("(spawn {} {start})", machine.name));
             }
             if choices.below(3) == 0 {
-                machine.transitions.push(format!("(exit [{}] * -> {})", condition(choices, scope), state.name));
+                let exit = exit(choices, &machine, scope, &state.name);
+                machine.transitions.push(exit);
             }
             state.machines.push(machine);
         }
+        if choices.below(6) == 0
+            && let Some(top) = choices.of(&self.machines)
+            && let Some(start) = top.states.first()
+        {
+            state.onentry.push(format!("(spawn {} {})", top.name, start.name));
+        }
         state
-    }
-
-    /// One small change somewhere.
-    pub fn change(&mut self, choices: &mut Choices) {
-        let scope = self.globals();
-        match choices.below(8) {
-            0 => {
-                let var = self.var(choices, &scope);
-                self.vars.push(var);
-            }
-            1 => self.add_machine(choices),
-            2 => drop(remove(&mut self.machines, choices)),
-            3 => drop(remove(&mut self.spawns, choices)),
-            4 if !self.vars.is_empty() => {
-                let index = choices.below(self.vars.len());
-                self.vars[index].init = expression(choices, &scope[..index]);
-            }
-            _ if !self.machines.is_empty() => {
-                let index = choices.below(self.machines.len());
-                let mut machine = std::mem::take(&mut self.machines[index]);
-                self.change_machine(&mut machine, choices, &scope);
-                self.machines[index] = machine;
-            }
-            _ => self.add_machine(choices),
-        }
-    }
-
-    fn change_machine(&mut self, machine: &mut Machine, choices: &mut Choices, scope: &[String]) {
-        let mut scope = scope.to_vec();
-        scope.extend(machine.vars.iter().map(|var| var.name.clone()));
-        match choices.below(10) {
-            0 => machine.vars.push(self.var(choices, &scope)),
-            1 => drop(remove(&mut machine.vars, choices)),
-            2 => machine.events.push(Var { name: self.name("e"), init: condition(choices, &scope) }),
-            3 => drop(remove(&mut machine.events, choices)),
-            4 => machine.states.push(self.state(choices, &scope, 1)),
-            5 if machine.states.len() > 1 => drop(remove(&mut machine.states, choices)),
-            6 => machine.transitions.push(transition(choices, machine, &scope)),
-            7 => drop(remove(&mut machine.transitions, choices)),
-            _ => {
-                let index = choices.below(machine.states.len());
-                let mut state = std::mem::take(&mut machine.states[index]);
-                self.change_state(&mut state, choices, &scope);
-                machine.states[index] = state;
-            }
-        }
-    }
-
-    fn change_state(&mut self, state: &mut State, choices: &mut Choices, scope: &[String]) {
-        match choices.below(5) {
-            0 => state.running.push(format!("[{}]", action(choices, scope))),
-            1 => drop(remove(&mut state.onexit, choices)),
-            2 => state.machines.push(self.machine(choices, scope, 0)),
-            _ if state.machines.is_empty() => {}
-            3 => drop(remove(&mut state.machines, choices)),
-            _ => {
-                let index = choices.below(state.machines.len());
-                let mut machine = std::mem::take(&mut state.machines[index]);
-                self.change_machine(&mut machine, choices, scope);
-                state.machines[index] = machine;
-            }
-        }
     }
 
     pub fn text(&self) -> String {
@@ -213,6 +175,9 @@ impl Plot {
         for (machine, state) in &self.spawns {
             let _ = writeln!(text, "(spawn {machine} {state})");
         }
+        for (form, block) in [("onpause", &self.onpause), ("onresume", &self.onresume)] {
+            let _ = block.iter().try_for_each(|block| writeln!(text, "({form} [{block}])"));
+        }
         text
     }
 }
@@ -224,7 +189,9 @@ impl Machine {
             let _ = writeln!(text, "(var {name} := [{init}])");
         }
         for Var { name, init } in &self.events {
-            let _ = writeln!(text, "(event {name} [{init}])");
+            // Both spellings.
+            let is = if name.ends_with(['0', '2', '4', '6', '8']) { ":= " } else { "" };
+            let _ = writeln!(text, "(event {name} {is}[{init}])");
         }
         for state in &self.states {
             let _ = writeln!(text, "(state {}", state.name);
@@ -234,72 +201,11 @@ impl Machine {
                     let _ = writeln!(text, "({form} {item})");
                 }
             }
-            text.push_str(")\n");
+            text.push_str(if state.breaks { "(break))\n" } else { ")\n" });
         }
         for transition in &self.transitions {
             let _ = writeln!(text, "{transition}");
         }
         text.push_str(")\n");
-    }
-}
-
-fn remove<T>(list: &mut Vec<T>, choices: &mut Choices) -> Option<T> {
-    let index = choices.below(list.len());
-    (index < list.len()).then(|| list.remove(index))
-}
-
-fn name(choices: &mut Choices, scope: &[String]) -> String {
-    choices.of(scope).cloned().unwrap_or_else(|| "nothing".into())
-}
-
-fn expression(choices: &mut Choices, scope: &[String]) -> String {
-    let var = name(choices, scope);
-    match choices.below(7) {
-        0 | 1 => choices.below(5).to_string(),
-        2 => format!("({var} or 1) / 3"),
-        3 => format!("{var} + 0.1"),
-        4 => format!("{{ n = type({var}) }}"),
-        5 => "function() return 1 end".into(),
-        _ => "nil + 1".into(),
-    }
-}
-
-fn condition(choices: &mut Choices, scope: &[String]) -> String {
-    let var = name(choices, scope);
-    match choices.below(6) {
-        0 => format!("elapsed() >= {}", 100 * choices.below(6)),
-        1 => format!("{var} > 2"),
-        2 => format!("type({var}) == 'table'"),
-        3 => "robot.light.data > 1".into(),
-        4 => "now() % 300 == 0".into(),
-        _ => "1".into(),
-    }
-}
-
-fn action(choices: &mut Choices, scope: &[String]) -> String {
-    let var = name(choices, scope);
-    match choices.below(6) {
-        0 => format!("{var} = ({var} or 0) + 1"),
-        1 => format!("{var} = {}", expression(choices, scope)),
-        2 => format!("{var}.n = now()"),
-        3 => format!("log.info({var})"),
-        4 => "robot.move{ linear = { x = 0.1 } }".into(),
-        _ => "error 'oh'".into(),
-    }
-}
-
-fn transition(choices: &mut Choices, machine: &Machine, scope: &[String]) -> String {
-    let state = |choices: &mut Choices| choices.of(&machine.states).map_or("gone".into(), |state| state.name.clone());
-    let (from, to) = (state(choices), state(choices));
-    let from = if choices.below(5) == 0 { "*".into() } else { from };
-    match choices.below(5) {
-        0 => format!("(eps {from} -> {to})"),
-        1 => format!("(ontime {} {from} -> {to})", 100 * choices.below(5)),
-        2 => format!("(ontime {} {from} -> {to})", name(choices, scope)),
-        3 => format!("(on [{}] {from} -> {to})", condition(choices, scope)),
-        _ => match choices.of(&machine.events) {
-            Some(event) => format!("(on {} {from} -> {to})", event.name),
-            None => format!("(on missing {from} -> {to})"),
-        },
     }
 }

@@ -1,89 +1,24 @@
 //! Random programs, random steps, inputs, commands and edits. Whatever happens: no panic, the picture folded from the
 //! records is the engine's, an edit leaves alone what it doesn't concern, and a trace read back tells the same.
 
-use std::collections::BTreeMap;
+mod kept;
+
 use std::sync::Arc;
 use std::time::Duration;
 
 use lrp::model::Program;
-use lrp::runtime::record::{Element, Held, Load, Op};
-use lrp::runtime::{BreakAt, Breaking, Command, Engine, Input, OnEdit, Record, Saves, Time, What};
+use lrp::runtime::record::{Change, Held, Load, Op};
+use lrp::runtime::{BreakAt, Breaking, Command, Engine, Input, OnEdit, OnError, Record, Saves, What};
 use lrp::session::compile::Compiler;
 use lrp::syntax::Source;
 use lrp::ui::view::View;
-use lrp::ui::view::owner;
 use proptest::prelude::*;
-use serde_json::{Value, json};
+use serde_json::json;
+
+use kept::Kept;
 
 use crate::plot::{Choices, Plot};
 use crate::stage::{Event, Stage, lines};
-
-/// What an edit that doesn't concern them leaves alone.
-#[derive(PartialEq)]
-struct Kept {
-    /// Active states, and when they were entered.
-    active: BTreeMap<String, Option<Time>>,
-    values: BTreeMap<String, Value>,
-}
-
-impl Kept {
-    fn of(engine: &Engine) -> Kept {
-        let active = engine.active().into_iter();
-        let entered = |state: &str| owner(state).and_then(|machine| engine.entered(machine));
-        Kept {
-            active: active.map(|state| (state.clone(), entered(&state))).collect(),
-            values: engine.values().into_iter().collect(),
-        }
-    }
-
-    /// After an edit, with what it said.
-    fn check(&self, after: &Kept, load: &Load, mode: OnEdit, set: &[&str]) -> Result<(), String> {
-        let ended: Vec<&str> = load.again.iter().chain(&load.discarded).map(|path| &**path).collect();
-        match mode {
-            OnEdit::Restart if !ended.is_empty() => return Err(format!("{ended:?} started again: {load:?}")),
-            OnEdit::Restart if load.restarted && !self.active.keys().any(|state| concerns(load, state)) => {
-                return Err(format!("restarted for no reason: {load:?}"));
-            }
-            OnEdit::Restart if load.restarted => return Ok(()),
-            OnEdit::Restart => {}
-            OnEdit::Keep if load.restarted => return Err("restarted, though it keeps".into()),
-            OnEdit::Keep => {
-                let for_no_reason = |machine: &&&str| {
-                    let states = self.active.keys();
-                    !states.filter(|state| owner(state) == Some(machine)).any(|state| concerns(load, state))
-                };
-                if let Some(machine) = ended.iter().find(for_no_reason) {
-                    return Err(format!("{machine} ended for no reason: {load:?}"));
-                }
-            }
-        }
-        let undisturbed = |path: &str| !ended.iter().any(|machine| is_inside(path, machine));
-        for (state, entered) in self.active.iter().filter(|(state, _)| undisturbed(state)) {
-            if after.active.get(state) != Some(entered) {
-                return Err(format!("{state} is disturbed"));
-            }
-        }
-        for (var, value) in self.values.iter().filter(|(var, _)| !set.contains(&var.as_str())) {
-            if after.values.get(var).is_some_and(|now| now != value) {
-                return Err(format!("{var} has changed"));
-            }
-        }
-        Ok(())
-    }
-}
-
-/// Whether an edit has anything to do with an active state.
-fn concerns(load: &Load, state: &str) -> bool {
-    load.changes.iter().any(|change| match (change.op, change.kind) {
-        (Op::Removed, Element::Machine) => owner(state) == Some(&*change.path),
-        (Op::Removed | Op::Changed, Element::State) => *change.path == *state,
-        _ => false,
-    })
-}
-
-fn is_inside(path: &str, machine: &str) -> bool {
-    path.strip_prefix(machine).is_some_and(|rest| rest.starts_with('/'))
-}
 
 struct Walk {
     stage: Stage,
@@ -94,16 +29,13 @@ struct Walk {
 
 pub fn walk(numbers: &[u32]) -> Result<(), String> {
     let choices = &mut Choices::new(numbers);
-    let mut plot = Plot::draw(choices);
+    let (mut plot, mut other) = (Plot::draw(choices), Plot::draw(choices));
     let mut walk = Walk { stage: Stage::new(1, Duration::from_secs(5), Vec::new()), mode: OnEdit::Restart, held: None };
     walk.stage.event(Event::Save(plot.text()));
     while !choices.is_empty() {
         match choices.below(3) {
             0 => walk.tick(1 + choices.below(4))?,
-            1 => {
-                plot.change(choices);
-                walk.happens(Event::Save(plot.text()))?;
-            }
+            1 => walk.edit(&mut plot, &mut other, choices)?,
             _ => walk.happens(event(choices, walk.stage.engine()))?,
         }
     }
@@ -111,23 +43,76 @@ pub fn walk(numbers: &[u32]) -> Result<(), String> {
 }
 
 impl Walk {
+    fn edit(&mut self, plot: &mut Plot, other: &mut Plot, choices: &mut Choices) -> Result<(), String> {
+        match choices.below(14) {
+            0 | 1 => {
+                let before = plot.text();
+                return match plot.rename(choices) {
+                    Some(names) => self.rename(&before, plot.text(), names),
+                    None => Ok(()),
+                };
+            }
+            2 | 3 => plot.rename_half(choices),
+            4 => {
+                let text = plot.text();
+                return self.spoil(text.chars().take(choices.below(text.len())).collect());
+            }
+            5 => return self.spoil(String::new()),
+            6 => std::mem::swap(plot, other),
+            _ => plot.change(choices),
+        }
+        self.happens(Event::Save(plot.text()))
+    }
+
+    /// Everything that is renamed along makes it a rename, which disturbs nothing.
+    fn rename(&mut self, before: &str, text: String, (old, new): (String, String)) -> Result<(), String> {
+        let runs = self.stage.engine().program().sources.first().is_some_and(|source| *source.text == *before);
+        let known = self.stage.records.len();
+        self.happens(Event::Save(text))?;
+        let fresh = &self.stage.records[known..];
+        let is_it = |change: &Change| {
+            let ends = |path: &str, name: &str| path.rsplit('/').next() == Some(name);
+            change.op == Op::Renamed && ends(&change.path, &old) && change.to.as_ref().is_some_and(|to| ends(to, &new))
+        };
+        // A name that meant nothing where it stood may have been changed with it.
+        let renamed = |load: &Load| {
+            let alone = load.changes.len() == 1;
+            load.changes.iter().any(is_it) && !(alone && (load.restarted || !load.again.is_empty()))
+        };
+        match loaded(fresh) {
+            Some(load) if runs && !renamed(load) => {
+                Err(format!("{old} was renamed to {new}: {}\nbefore\n{before}", lines(fresh)))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// A text that may not be a program: then nothing is disturbed.
+    fn spoil(&mut self, text: String) -> Result<(), String> {
+        let before = Kept::of(&self.stage);
+        let known = self.stage.records.len();
+        self.stage.event(Event::Save(text.clone()));
+        let rejected = self.stage.records[known..].iter().any(|record| matches!(record.what, What::Reject { .. }));
+        match rejected && before != Kept::of(&self.stage) {
+            true => Err(format!("disturbed by a text that is none:\n{text}")),
+            false => self.follow(known),
+        }
+    }
+
     fn tick(&mut self, times: usize) -> Result<(), String> {
         let known = self.stage.records.len();
         (0..times).for_each(|_| self.stage.tick());
-        self.follow_held(known)
+        self.follow(known)
     }
 
     fn happens(&mut self, event: Event) -> Result<(), String> {
-        let before = Kept::of(self.stage.engine());
+        let before = Kept::of(&self.stage);
         let known = self.stage.records.len();
         self.stage.event(event.clone());
-        let after = Kept::of(self.stage.engine());
+        let after = Kept::of(&self.stage);
         let fresh = &self.stage.records[known..];
         let wrong = |wrong: String| format!("{wrong} by {event:?}\n{}", lines(fresh));
-        let load = fresh.iter().find_map(|record| match &record.what {
-            What::Load(load) => Some(load),
-            _ => None,
-        });
+        let load = loaded(fresh);
         if let Some(load) = load {
             let set = fresh.iter().filter_map(|record| match &record.what {
                 What::Set { var, .. } => Some(&**var),
@@ -150,17 +135,24 @@ impl Walk {
             (Event::Command(Command::OnEdit { mode }), ..) => self.mode = *mode,
             _ => {}
         }
-        self.follow_held(known)
+        self.follow(known)
     }
 
-    /// The records say what is held.
-    fn follow_held(&mut self, known: usize) -> Result<(), String> {
+    /// The records say what is held and in which mode, and so does the picture.
+    fn follow(&mut self, known: usize) -> Result<(), String> {
         for record in &self.stage.records[known..] {
             match &record.what {
                 What::Held(held) => self.held = Some(held.clone()),
                 What::Load(_) | What::Command { command: Command::DropHeld } => self.held = None,
                 _ => {}
             }
+        }
+        let view = &self.stage.view;
+        if (&view.held, view.choices.on_edit) != (&self.held, self.mode) {
+            return Err(format!(
+                "pictured: {:?}, {:?}; told: {:?}, {:?}",
+                view.held, view.choices, self.held, self.mode
+            ));
         }
         match self.stage.engine().held() == self.held.as_ref() {
             true => Ok(()),
@@ -169,12 +161,19 @@ impl Walk {
     }
 }
 
+fn loaded(records: &[Record]) -> Option<&Load> {
+    records.iter().find_map(|record| match &record.what {
+        What::Load(load) => Some(load),
+        _ => None,
+    })
+}
+
 fn event(choices: &mut Choices, engine: &Engine) -> Event {
     let states = &engine.program().states;
     let vars = &engine.program().vars;
     let state = choices.of(states).map(|state| state.path.to_string()).unwrap_or_default();
     let var = choices.of(vars).map(|var| var.path.to_string()).unwrap_or_default();
-    Event::Command(match choices.below(21) {
+    Event::Command(match choices.below(23) {
         0 => Command::Pause,
         1 | 2 => Command::Resume,
         3 => Command::TransitionTo { state },
@@ -195,6 +194,11 @@ fn event(choices: &mut Choices, engine: &Engine) -> Event {
             let at = BreakAt::Condition { condition: "now() % 300 == 0".into(), machine: "".into() };
             Command::Break { at, mode: Breaking::Set }
         }
+        20 => match engine.breakpoints().first() {
+            Some(first) => Command::Break { at: first.at.clone(), mode: Breaking::Clear },
+            None => Command::OnError { mode: OnError::Continue },
+        },
+        21 => Command::OnError { mode: OnError::Pause },
         _ => {
             let value = json!({ "data": choices.below(4) });
             return Event::Input(Input { bridge: "robot".into(), name: "light".into(), value });
