@@ -105,13 +105,16 @@ impl Store {
 
     fn take_over_cells(&mut self, old: &Program, new: &Program, matching: &Matching) {
         let mut kept: Vec<Option<Cell>> = vec![None; new.vars.len()];
+        let mut gone = Vec::new();
         for (index, &cell) in self.cells.iter().enumerate().take(old.vars.len()) {
             match matching.var(VarId(index as u32)) {
                 Some(now) => kept[now.index()] = Some(cell),
-                None => self.lua.free_cell(cell),
+                None => gone.push(cell),
             }
         }
         self.cells = kept.into_iter().map(|cell| cell.unwrap_or_else(|| self.lua.cell())).collect();
+        // Only now, so that no new variable gets the cell of one that is gone: blocks are known by their cells.
+        gone.into_iter().for_each(|cell| self.lua.free_cell(cell));
     }
 
     fn take_over_blocks(&mut self, new: &Program, renamed: &[Key]) -> Vec<Uncompiled> {
