@@ -120,7 +120,7 @@ pub struct RunArgs {
     /// place, and starts only a machine again whose active state is gone or spawns something else
     #[arg(long, value_name = "HOW", value_enum, default_value_t = EditMode::Restart)]
     pub on_edit: EditMode,
-    /// Pause at the first thing that goes wrong while it runs; without a screen, end there
+    /// Pause when something goes wrong that no check of the text foresaw; without a screen, end there
     #[arg(long, action = ArgAction::SetTrue)]
     pub pause_on_error: bool,
     /// How long a block may run before it is stopped, ms

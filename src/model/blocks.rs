@@ -1,6 +1,6 @@
 //! What the Lua in a program's blocks refers to: variables, bridges, or nothing known.
 
-use super::link::renamed_help;
+use super::link::renamed_words;
 use super::names::Names;
 use super::program::{Block, Program};
 use crate::lua::{self, Checker, NameUse};
@@ -73,6 +73,10 @@ fn unknown_name(
             let message = format!("`{}` can't be assigned: it is not a variable of this program", name.name);
             Some(Diagnostic::error(Code::UnknownVariable, span, message).help("declare a variable of another name"))
         }
+        _ if let Some(renamed) = Names::of(program).var(block.machine, &name.name) => {
+            let (message, help) = renamed_words(&name.name, program.name(renamed));
+            Some(Diagnostic::error(Code::UnknownVariable, span, message).help(help))
+        }
         _ => {
             let mut known: Vec<String> =
                 Names::of(program).vars(block.machine).iter().map(ToString::to_string).collect();
@@ -81,9 +85,7 @@ fn unknown_name(
             let message = format!("`{}` is not a variable in scope here", name.name);
             let inside = program.vars.iter().find(|var| *var.name == *name.name);
             let system = lua::SYSTEM.contains(&&*name.name);
-            let renamed = Names::of(program).var(block.machine, &name.name);
             let help = match (inside, nearest(&name.name, known.iter().map(String::as_str))) {
-                _ if let Some(var) = renamed => renamed_help(&name.name, program.name(var)),
                 (Some(var), _) => {
                     format!("`{}` is seen only in its machine: declare it further out to share it", var.path)
                 }

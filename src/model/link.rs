@@ -269,19 +269,20 @@ impl Resolver<'_> {
         name: &ast::Name,
         known: impl IntoIterator<Item = &'a str>,
     ) {
-        let known: Vec<&str> = known.into_iter().collect();
         let alias = Kind::missing(code).and_then(|kind| self.program.alias(kind, &name.text));
-        let help = match alias {
-            Some(renamed) => renamed_help(&name.text, self.program.name(renamed)),
-            None => suggestion(&name.text, &known),
+        let (message, help) = match alias {
+            Some(renamed) => renamed_words(&name.text, self.program.name(renamed)),
+            None => {
+                let known: Vec<&str> = known.into_iter().collect();
+                let article = if what.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
+                (format!("`{}` is not {article} {what}", name.text), suggestion(&name.text, &known))
+            }
         };
-        let article = if what.starts_with(['a', 'e', 'i', 'o', 'u']) { "an" } else { "a" };
-        let message = format!("`{}` is not {article} {what}", name.text);
         self.diagnostics.push(Diagnostic::error(code, name.span, message).help(help));
     }
 }
 
-/// What to do about a name whose element has another one now.
-pub(super) fn renamed_help(old: &str, new: &str) -> String {
-    format!("`{old}` seems to have been renamed to `{new}`: rename it here too")
+/// What is wrong with a name whose element has another one now, and what to do about it.
+pub(super) fn renamed_words(old: &str, new: &str) -> (String, String) {
+    (format!("`{old}` is called `{new}` now"), format!("rename it here too; until then `{old}` goes on meaning it"))
 }

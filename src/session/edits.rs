@@ -163,7 +163,7 @@ impl Desk {
     fn watch_all(&self) {
         let watched = |path: &PathBuf| {
             // Without a text to compare with, the next one counts as new: at worst it is taken over again.
-            let text = loader::read(path).ok().map(|source| source.text);
+            let text = loader::read_file(path).ok().map(|source| source.text);
             Watched { path: path.clone(), text }
         };
         let read = std::iter::once(&self.file).chain(&self.beside).map(watched);

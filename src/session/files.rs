@@ -17,7 +17,7 @@ pub struct Disk;
 
 impl Files for Disk {
     fn read(&self, path: &Path) -> Result<Source, Unreadable> {
-        loader::read(path)
+        loader::read_file(path)
     }
 
     /// Absolute, without links; of a file that doesn't exist, its folder.

@@ -27,6 +27,10 @@ pub enum Unreadable {
     Directory {
         path: PathBuf,
     },
+    /// A pipe, a socket or a device.
+    NotAFile {
+        path: PathBuf,
+    },
     /// Nothing but white space, if that.
     Empty {
         path: PathBuf,
@@ -64,6 +68,7 @@ impl fmt::Display for Unreadable {
             Self::Directory { path } => {
                 write!(f, "{}: this is a folder; name a file in it", path.display())
             }
+            Self::NotAFile { path } => write!(f, "{}: this is a pipe or a device, not a file", path.display()),
             Self::Empty { path } => write!(f, "{}: the file is empty", path.display()),
             Self::NotUtf8 { path, line, column, byte } => {
                 write!(f, "{}:{line}:{column}: not UTF-8 (byte 0x{byte:02X}); save the file as UTF-8", path.display())
@@ -91,6 +96,15 @@ pub fn read(path: &Path) -> Result<Source, Unreadable> {
         return Err(Unreadable::Empty { path: path.into() });
     }
     Ok(Source::new(path.to_string_lossy(), text))
+}
+
+/// The same, but of nothing except a file: to open a pipe may take for ever.
+pub fn read_file(path: &Path) -> Result<Source, Unreadable> {
+    let kind = path.metadata().map_err(|error| explain(path, &error))?;
+    if !kind.is_file() && !kind.is_dir() {
+        return Err(Unreadable::NotAFile { path: path.into() });
+    }
+    read(path)
 }
 
 /// None where there are too many.

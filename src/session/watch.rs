@@ -202,7 +202,7 @@ impl<F: Fn(Saved)> Watching<F> {
         if !self.is_due(&path) {
             return Then::Continue;
         }
-        let found = loader::read(&path).map(|source| source.text);
+        let found = loader::read_file(&path).map(|source| source.text);
         self.look(&path);
         if let Then::End = self.take_all() {
             return Then::End;

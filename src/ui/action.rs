@@ -122,15 +122,15 @@ table! {
     Action::JumpTo, "jump-to", ["J"], "jump", "jump to the selected state: no action runs", Program, STATES;
     Action::Restart, "restart", ["Ctrl-R"], "", "restart the program from scratch", Program, Reach::Screen;
 
-    Action::SwitchOnEdit, "on-edit", ["M"], "", "an edit of an active state: restart, or keep it running", Edits, Reach::Screen;
-    Action::SwitchSaves, "saves", ["S"], "", "hold saves until you apply them, or let them count", Edits, Reach::Screen;
+    Action::SwitchOnEdit, "on-edit", ["M"], "", "edits of active states: restart, or keep", Edits, Reach::Screen;
+    Action::SwitchSaves, "saves", ["S"], "", "hold saves until applied, or no more", Edits, Reach::Screen;
     Action::ApplyHeld, "apply-held", ["A"], "apply", "apply the held edit", Edits, Reach::Screen;
     Action::DropHeld, "drop-held", ["X"], "drop", "drop the held edit", Edits, Reach::Screen;
     Action::HeldEdit, "held-edit", ["E"], "show", "what the held edit would do, and back", Edits, Reach::Screen;
-    Action::GiveBack, "give-back", ["u"], "tuned", "set values again that an edit or restart cost", Edits, Reach::Screen;
+    Action::GiveBack, "give-back", ["u"], "tuned", "set values again that an edit took", Edits, Reach::Screen;
 
-    Action::ToggleBreakpoint, "breakpoint", ["B"], "", "pause at the selected state or transition, or no more", Breaks, Reach::Screen;
-    Action::BreakWhen, "break-when", ["C"], "", "pause when a condition becomes true: type it", Breaks, Reach::Screen;
+    Action::ToggleBreakpoint, "breakpoint", ["B"], "", "pause at what is selected, or no more", Breaks, Reach::Screen;
+    Action::BreakWhen, "break-when", ["C"], "", "pause when what you type becomes true", Breaks, Reach::Screen;
     Action::Breakpoints, "breakpoints", ["D"], "", "all breakpoints, to clear them", Breaks, Reach::Screen;
     Action::SwitchOnError, "on-error", ["P"], "", "pause when something goes wrong, or go on", Breaks, Reach::Screen;
 

@@ -249,7 +249,7 @@ fn bridges_that_cannot_be() {
         ),
         ("sim [world = 'none.world']", "error: the world can't be read: none.world: no such file"),
         ("sim [world = '.']", "error: the world can't be read: .: this is a folder"),
-        ("sim [world = '/dev/zero']", "error: the world can't be read: /dev/zero: larger than 8 MiB"),
+        ("sim [world = '/dev/zero']", "error: the world can't be read: /dev/zero: this is a pipe or a device"),
         ("sim [world = 'bad.lrp']", "bad.lrp:1:1: error: unknown word"),
         ("sim [wordl = 'x']", "error: the simulator has no setting `wordl`; did you mean `world`?"),
     ] {

@@ -94,6 +94,13 @@ impl Running {
         self.wait_for(kind, |record| record["kind"] == kind)
     }
 
+    /// The memory it takes now, in bytes, where the system tells.
+    pub fn memory(&self) -> Option<u64> {
+        let status = std::fs::read_to_string(format!("/proc/{}/status", self.child.id())).ok()?;
+        let line = status.lines().find_map(|line| line.strip_prefix("VmRSS:"))?;
+        Some(line.trim().strip_suffix("kB")?.trim().parse::<u64>().ok()? << 10)
+    }
+
     pub fn signal(&self, signal: i32) {
         // SAFETY: a signal to a child that hasn't been waited for.
         assert_eq!(unsafe { libc::kill(self.child.id() as i32, signal) }, 0);

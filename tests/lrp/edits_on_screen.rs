@@ -163,6 +163,14 @@ fn tuned_values_that_a_restart_cost_are_offered_back() {
 }
 
 #[test]
+fn news_of_many_changes_stand_out_over_the_log() {
+    let mut story = tuned();
+    let states = ["moving", "looking", "bumpback", "bumpturn", "finished"];
+    restarted(&mut story, states.map(|state| change(Op::Changed, Element::State, &format!("follower/{state}"))).into());
+    check("many_changes_80x24", &screen(80, 24, &story));
+}
+
+#[test]
 fn a_new_initial_value_is_not_a_loss() {
     let mut story = tuned();
     restarted(&mut story, vec![change(Op::Changed, Element::Variable, "lightlim")]);
@@ -337,6 +345,19 @@ fn breakpoints_are_set_where_a_person_is() {
 }
 
 #[test]
+fn a_mistake_in_what_was_typed_stands_above_it_whole() {
+    for (cols, rows) in [(80, 24), (40, 24)] {
+        let mut app = screen(cols, rows, &Story::searching());
+        press(&mut app, "C t i e m Enter");
+        go_on(&mut app, |story| {
+            let message = "`tiem`: `tiem` is not a variable in scope here; did you mean `time`?".into();
+            story.tell(What::Log(Log { level: Level::Error, message, state: "".into(), file: "".into(), line: 0 }));
+        });
+        check(&format!("refused_{cols}x{rows}"), &app);
+    }
+}
+
+#[test]
 fn a_breakpoint_that_is_met_is_looked_at() {
     let mut story = Story::searching();
     story.tell(breakpoints());
@@ -391,5 +412,7 @@ fn another_file_is_named_and_opened() {
     assert!(seen.contains("✗ moving: it broke") && seen.contains("✗ turn.lrp: moving: it broke"), "{seen}");
     assert!(seen.contains(" turn.lrp:5"), "{seen}");
     let there = Effect::OpenEditor { file: "lib/turn.lrp".into(), line: 7, column: 3 };
-    assert_eq!(press(&mut app, "4 Down Down o"), [there]);
+    let first = Effect::OpenEditor { file: "line_follower.lrp".into(), line: 7, column: 3 };
+    assert_eq!(press(&mut app, "4 o"), [first], "nothing is selected");
+    assert_eq!(press(&mut app, "Down Down o"), [there]);
 }

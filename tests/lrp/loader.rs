@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use lrp::session::loader::{LIMIT, Unreadable, read};
+use lrp::session::loader::{LIMIT, Unreadable, read, read_file};
 
 fn folder(files: &[(&str, &[u8])]) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
@@ -88,4 +88,15 @@ fn the_limit_is_sharp_and_a_giant_is_not_read() {
 fn a_path_through_a_file_is_explained() {
     let dir = folder(&[("a.lrp", b"x")]);
     assert!(complaint(dir.path(), "a.lrp/b.lrp").starts_with("a.lrp/b.lrp: Not a directory"));
+}
+
+/// Nobody writes to it: to open it would take for ever.
+#[test]
+fn a_pipe_is_not_waited_for_where_a_file_should_be() {
+    let dir = folder(&[("a.lrp", b"(var x := [1])")]);
+    let path = dir.path().join("pipe.lrp");
+    assert!(std::process::Command::new("mkfifo").arg(&path).status().unwrap().success());
+    assert_eq!(read_file(&path), Err(Unreadable::NotAFile { path }));
+    assert!(read_file(&dir.path().join("a.lrp")).is_ok());
+    assert_eq!(read_file(dir.path()), Err(Unreadable::Directory { path: dir.path().into() }));
 }

@@ -35,6 +35,7 @@ mod settling;
 mod shelf;
 mod signals;
 mod stage;
+mod storms;
 mod story;
 mod syntax;
 mod terminal;

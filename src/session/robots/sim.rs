@@ -134,7 +134,7 @@ pub fn world_file(bridge: &model::Bridge, folder: &Path) -> Option<PathBuf> {
 }
 
 fn read_world(bridge: &model::Bridge, file: &Path) -> Result<Source, Problems> {
-    loader::read(file).map_err(|why| problem(bridge.span, format!("the world can't be read: {why}")))
+    loader::read_file(file).map_err(|why| problem(bridge.span, format!("the world can't be read: {why}")))
 }
 
 fn broken_world(world: &Source, file: FileId, faults: &[lrp_sim::Fault]) -> Problems {

@@ -184,11 +184,13 @@ impl App {
         self.place(program[program.var(self.value.as_ref()?)?].name_span)
     }
 
+    /// Of the selected line; without one, of the first problem.
     fn place_of_log(&self) -> Option<(Path, usize, usize)> {
-        match self.reading.place.as_ref()? {
-            LogRow::Problem(key) => (key.line > 0).then(|| (key.file.clone(), key.line, key.column.max(1))),
+        let first = || self.view.problems.first().map(|problem| LogRow::Problem(problem.key.clone()));
+        match self.reading.place.clone().or_else(first)? {
+            LogRow::Problem(key) => (key.line > 0).then(|| (key.file, key.line, key.column.max(1))),
             LogRow::Entry(number) => {
-                let (file, line) = self.view.journal.get(*number)?.place.clone()?;
+                let (file, line) = self.view.journal.get(number)?.place.clone()?;
                 Some((file, line, 1))
             }
         }

@@ -35,7 +35,7 @@ impl App {
 
     pub(super) fn switch_saves(&mut self) -> Vec<Effect> {
         let (mode, said) = match self.view.choices.saves {
-            Saves::Apply => (Saves::Hold, "saves are held from now on: A applies, X drops one"),
+            Saves::Apply => (Saves::Hold, "saves wait for A (apply), X (drop); E lists what they do"),
             Saves::Hold => (Saves::Apply, "saves count at once from now on"),
         };
         self.say(said);

@@ -2,6 +2,7 @@
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
+use ratatui::style::Style;
 use unicode_width::UnicodeWidthChar;
 
 use crate::ui::action::{self, Action};
@@ -13,17 +14,20 @@ use crate::ui::view::{Mode, name};
 /// Where the cursor stands, when there is one.
 pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Option<Position> {
     let theme = app.theme();
-    let mut pen = Pen::new(buffer, area, 0);
     let typing = match app.overlay() {
         Overlay::Typing(typing) => Some(typing),
         _ => None,
     };
+    if let Some((typing, message)) = typing.zip(app.message()) {
+        draw_mistake(app, typing, message, area, buffer);
+    }
+    let mut pen = Pen::new(buffer, area, 0);
     pen.put_right(" ", theme.normal());
     pen.put_right(" STOP", theme.stop()).put_right(if typing.is_some() { "Ctrl-X" } else { "!" }, theme.stop());
     pen.put_right("  ", theme.normal());
     pen.put(" ", theme.normal());
     match (typing, app.message()) {
-        (Some(typing), message) => Some(draw_typing(app, typing, message, pen, area)),
+        (Some(typing), _) => Some(draw_typing(app, typing, pen, area)),
         (None, Some(message)) => {
             pen.put(message, theme.bold());
             None
@@ -51,24 +55,15 @@ fn draw_given(app: &App, keys: &[(&str, &str)], pen: &mut Pen) {
     }
 }
 
-/// With what is wrong beside it, if anything is.
-fn draw_typing(app: &App, typing: &Typing, message: Option<&str>, mut pen: Pen, area: Rect) -> Position {
+fn draw_typing(app: &App, typing: &Typing, mut pen: Pen, area: Rect) -> Position {
     let theme = app.theme();
     let (before, sign) = match &typing.goal {
         Goal::Value(var) => (var.to_string(), " = "),
         Goal::Condition(machine) if machine.is_empty() => ("pause when".into(), " "),
         Goal::Condition(machine) => (format!("{}: pause when", name(machine)), " "),
     };
-    let needed = (format::width(&before) + 3 + format::width(typing.input.value()) + 3).min(pen.room() / 2);
-    match message {
-        Some(message) => {
-            let message = format::fit(message, pen.room() - needed);
-            pen.put_right(&message, theme.stop()).put_right("  ", theme.normal());
-        }
-        None if pen.room() >= 58 => {
-            pen.put_right("Enter sets  Esc leaves", theme.dim()).put_right("  ", theme.dim());
-        }
-        None => (),
+    if pen.room() >= 58 {
+        pen.put_right("Enter sets  Esc leaves", theme.dim()).put_right("  ", theme.dim());
     }
     pen.put(&format::fit(&before, pen.room() / 2), theme.bold()).put(sign, theme.dim());
     let (start, room) = (pen.at(), pen.room().saturating_sub(1));
@@ -80,6 +75,18 @@ fn draw_typing(app: &App, typing: &Typing, message: Option<&str>, mut pen: Pen, 
     pen.put(&after_columns(typing.input.value(), scroll), style);
     let cursor = typing.input.visual_cursor().saturating_sub(scroll) as u16;
     Position::new(start.saturating_add(cursor).min(area.right().saturating_sub(1)), area.y)
+}
+
+/// In the rows above the line, without the words that stand in it.
+fn draw_mistake(app: &App, typing: &Typing, message: &str, area: Rect, buffer: &mut Buffer) {
+    let typed = format!("`{}`: ", typing.input.value().trim());
+    let lines = format::wrap(message.strip_prefix(&typed).unwrap_or(message), area.width.saturating_sub(2));
+    // Never over the first line, which says whether the robot may move.
+    let first = area.y.saturating_sub(lines.len() as u16).max(1);
+    for (y, line) in (first..area.y).zip(&lines) {
+        let style = app.theme().stop();
+        Pen::new(buffer, Rect { y, ..area }, 0).put(" ", style).put(line, style).fill(" ", Style::reset());
+    }
 }
 
 fn after_columns(text: &str, columns: usize) -> String {

@@ -19,10 +19,24 @@ pub fn draw(app: &App, place: Rect, buffer: &mut Buffer) {
     let height = (lines.len() as u16 + 1).min(place.bottom().saturating_sub(1));
     let y = place.y.min(place.bottom() - height);
     let area = Rect { y, height, ..place };
+    move_junction(place, y, buffer);
     let mut title = Pen::new(buffer, area, 0);
     title.put("─ ", theme.rule()).put("saved", theme.fresh()).put(" ", theme.rule()).fill("─", theme.rule());
     for (y, (text, style)) in (1..height).zip(&lines) {
         Pen::new(buffer, area, y).put(" ", Style::reset()).put(text, *style).fill(" ", Style::reset());
+    }
+}
+
+/// The rule at the left meets the title where that stands now.
+fn move_junction(place: Rect, y: u16, buffer: &mut Buffer) {
+    let Some(x) = place.x.checked_sub(1).filter(|_| y < place.y) else { return };
+    for (y, glyphs) in [(place.y, [("├", "│"), ("┼", "┤")]), (y, [("│", "├"), ("┤", "┼")])] {
+        let there = buffer.cell_mut((x, y)).into_iter();
+        there.for_each(|cell| {
+            if let Some((_, now)) = glyphs.into_iter().find(|(was, _)| cell.symbol() == *was) {
+                cell.set_symbol(now);
+            }
+        });
     }
 }
 

@@ -230,7 +230,7 @@ fn edit_words(app: &App, edit: &Edit) -> (String, Style) {
         Edit::Taken(outcome) => (format!("saved: {}", outcome.summary()), theme.normal()),
         // That it is held is told beside it.
         Edit::Held { changes } => (changes.clone(), theme.dim()),
-        Edit::Dropped => ("dropped".into(), theme.normal()),
+        Edit::Dropped => ("edit dropped".into(), theme.normal()),
         Edit::Restarted => ("restarted".into(), theme.normal()),
         Edit::Mended => ("mended".into(), theme.normal()),
         Edit::Rejected { first, .. } => (app.view().headline(first), theme.stop()),
