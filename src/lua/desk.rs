@@ -45,6 +45,9 @@ static KEY: u8 = 0;
 /// Begins the names of chunks, so that positions in messages can be told from the user's text.
 pub(super) const MARK: char = '\u{1}';
 
+/// A chunk that has no number yet.
+pub(super) const UNNAMED: &CStr = c"=\x010";
+
 /// The name under which Lua knows the text of chunk `id`.
 pub(super) fn chunk_name(id: u32) -> String {
     format!("={MARK}{id}")
