@@ -19,7 +19,10 @@ impl Lua {
             }
         }
         let precompiled = self.precompile(code, &facts, &variables)?;
-        self.load(&precompiled, scope)
+        let block = self.load(&precompiled, scope)?;
+        let names = scope.iter().map(|&(name, _)| name.into()).collect();
+        self.with_chunk(block, |chunk| chunk.scope = names);
+        Ok(block)
     }
 
     /// Makes a block of one that was compiled before. `scope`: the variables, inner last.
@@ -28,8 +31,7 @@ impl Lua {
     /// It assigns something built in.
     pub fn load(&mut self, precompiled: &Precompiled, scope: &[(&str, Cell)]) -> Result<Block, SyntaxError> {
         precompiled.other_writes().try_for_each(|found| self.check_builtin(found))?;
-        self.chunks += 1;
-        let chunk = self.chunks;
+        let chunk = self.desk.chunks.borrow().len() as u32;
         self.unlimited(|lua| {
             // SAFETY: nothing runs, there is no memory limit, and the bytecode is what was made of the block's text.
             unsafe { source::load_built(lua.stack.state(), &precompiled.named(chunk)) }
@@ -43,8 +45,8 @@ impl Lua {
             writes.extend(precompiled.writes(name).then_some(cell));
         }
         self.note_slot(block.0, Slot::Block { chunk, writes: writes.into() });
-        let scope = scope.iter().map(|&(name, _)| name.into()).collect();
-        self.desk.chunks.borrow_mut().insert(chunk, Chunk { block: Some(block), place: None, scope });
+        let scope = precompiled.scope();
+        self.desk.chunks.borrow_mut().push(Chunk { block: Some(block), place: None, scope });
         Ok(block)
     }
 
@@ -68,12 +70,10 @@ impl Lua {
 
     /// Gives a block up; its number may be used again.
     pub fn free_block(&mut self, block: Block) {
-        if let Some(chunk) = self.chunk(block)
-            && let Some(chunk) = self.desk.chunks.borrow_mut().get_mut(&chunk)
-        {
+        self.with_chunk(block, |chunk| {
             chunk.block = None;
-            chunk.scope = Box::default();
-        }
+            chunk.scope = Arc::default();
+        });
         self.note_slot(block.0, Slot::Empty);
         self.stack.release(block.0);
     }
@@ -87,10 +87,12 @@ impl Lua {
 
     /// Where a block is: its first line is line `first_line` (from 1) of `file`. To be called again when an edit moved it.
     pub fn set_place(&mut self, block: Block, file: &Arc<str>, first_line: u32) {
-        if let Some(chunk) = self.chunk(block)
-            && let Some(chunk) = self.desk.chunks.borrow_mut().get_mut(&chunk)
-        {
-            chunk.place = Some((Arc::clone(file), first_line));
+        self.with_chunk(block, |chunk| chunk.place = Some((Arc::clone(file), first_line)));
+    }
+
+    fn with_chunk(&self, block: Block, change: impl FnOnce(&mut Chunk)) {
+        if let Some(chunk) = self.chunk(block) {
+            change(&mut self.desk.chunks.borrow_mut()[chunk as usize]);
         }
     }
 

@@ -120,7 +120,6 @@ pub struct Lua {
     watchdog: Watchdog,
     stack: Stack,
     slots: Vec<Slot>,
-    chunks: u32,
     failure: Option<Failure>,
     limits: Limits,
     desk: Rc<Desk>,
@@ -146,7 +145,7 @@ impl Lua {
         let stack = Stack::new(&sandbox.mlua, guard.clone())?;
         sandbox.mlua.set_memory_limit(limits.memory)?;
         let watchdog = Watchdog::new(guard, stack.state());
-        Ok(Self { watchdog, stack, slots: Vec::new(), chunks: 0, failure: None, limits, desk, sandbox })
+        Ok(Self { watchdog, stack, slots: Vec::new(), failure: None, limits, desk, sandbox })
     }
 
     /// Does what Lua itself needs memory for, whatever variables hold.

@@ -10,7 +10,7 @@ use super::{Facts, Lua, NameUse, SyntaxError, source};
 /// A block that any interpreter can take up. Only its own text makes one: what Lua is given as bytecode, it trusts.
 #[derive(Debug, PartialEq)]
 pub struct Precompiled {
-    variables: Box<[Box<str>]>,
+    variables: Arc<[Box<str>]>,
     facts: Arc<Facts>,
     bytecode: Vec<u8>,
 }
@@ -19,6 +19,11 @@ impl Precompiled {
     /// The names in it that are variables, each once.
     pub fn variables(&self) -> impl Iterator<Item = &str> {
         self.variables.iter().map(|name| &**name)
+    }
+
+    /// What else could have been meant by a name in it.
+    pub(super) fn scope(&self) -> Arc<[Box<str>]> {
+        Arc::clone(&self.variables)
     }
 
     pub(super) fn writes(&self, name: &str) -> bool {
