@@ -20,7 +20,7 @@ pub(super) enum Kind {
 }
 
 /// Signature, version, format, check bytes, three sizes, an integer, a number, the count of upvalues.
-const HEADER: usize = 4 + 1 + 1 + 6 + 3 + 8 + 8 + 1;
+pub(super) const HEADER: usize = 4 + 1 + 1 + 6 + 3 + 8 + 8 + 1;
 /// In place of a line's difference: the line is in the other list.
 const ABSOLUTE: i8 = -0x80;
 

@@ -1,7 +1,7 @@
 //! What a running block can reach of its interpreter: program time, the log, where blocks stand in their files. Knows nothing of how blocks are called.
 
 use std::cell::{Cell, RefCell};
-use std::collections::{BTreeSet, HashMap};
+use std::collections::BTreeSet;
 use std::ffi::{CStr, c_void};
 use std::sync::Arc;
 
@@ -20,10 +20,11 @@ pub(super) struct Spot {
 }
 
 /// What is known of a compiled text. It outlives the block, as functions made by it may.
+#[derive(Default)]
 pub(super) struct Chunk {
     pub block: Option<Block>,
     pub place: Option<(Arc<str>, u32)>,
-    pub scope: Box<[Box<str>]>,
+    pub scope: Arc<[Box<str>]>,
 }
 
 pub(super) struct Desk {
@@ -32,7 +33,8 @@ pub(super) struct Desk {
     pub now: Cell<u64>,
     pub since: Cell<u64>,
     pub log: Log,
-    pub chunks: RefCell<HashMap<u32, Chunk>>,
+    /// By their numbers; the first stands for texts that are only looked at.
+    pub chunks: RefCell<Vec<Chunk>>,
     /// Where the error being raised was raised.
     pub fault: Cell<Option<Spot>>,
     /// The names every block has at hand.
@@ -44,6 +46,9 @@ static KEY: u8 = 0;
 
 /// Begins the names of chunks, so that positions in messages can be told from the user's text.
 pub(super) const MARK: char = '\u{1}';
+
+/// A chunk that has no number yet.
+pub(super) const UNNAMED: &CStr = c"=\x010";
 
 /// The name under which Lua knows the text of chunk `id`.
 pub(super) fn chunk_name(id: u32) -> String {
@@ -57,7 +62,7 @@ impl Desk {
             now: Cell::new(0),
             since: Cell::new(0),
             log: Log::default(),
-            chunks: RefCell::default(),
+            chunks: RefCell::new(vec![Chunk::default()]),
             fault: Cell::new(None),
             known: RefCell::default(),
         }
@@ -66,7 +71,7 @@ impl Desk {
     /// Where line `line` of chunk `id` is in its file.
     pub fn place(&self, id: u32, line: u32) -> Option<(String, u32)> {
         let chunks = self.chunks.borrow();
-        let (file, first) = chunks.get(&id)?.place.as_ref()?;
+        let (file, first) = chunks.get(id as usize)?.place.as_ref()?;
         Some((file.to_string(), first + line.saturating_sub(1)))
     }
 
@@ -81,13 +86,13 @@ impl Desk {
     }
 
     pub fn block(&self, spot: Option<Spot>) -> Option<Block> {
-        self.chunks.borrow().get(&spot?.chunk)?.block
+        self.chunks.borrow().get(spot?.chunk as usize)?.block
     }
 
     /// The name nearest to `name` of those that code of chunk `spot` can use.
     pub fn suggest(&self, name: &str, spot: Option<Spot>) -> Option<String> {
         let (chunks, known) = (self.chunks.borrow(), self.known.borrow());
-        let scope = spot.and_then(|spot| chunks.get(&spot.chunk)).map(|chunk| &*chunk.scope);
+        let scope = spot.and_then(|spot| chunks.get(spot.chunk as usize)).map(|chunk| &*chunk.scope);
         let scope = scope.unwrap_or_default().iter().map(|name| &**name);
         nearest(name, scope.chain(known.iter().map(String::as_str))).map(str::to_owned)
     }

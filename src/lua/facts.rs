@@ -6,7 +6,9 @@ use serde_json::Value;
 
 use super::bytecode::{self, Kind, Use};
 use super::known::Known;
+use super::precompiled::Precompiled;
 use super::registers::{FieldUse, Gives};
+use super::source::Form;
 use super::value::Bounds;
 use super::{Access, Failure, Limits, Lua, SyntaxError, source};
 
@@ -26,6 +28,7 @@ pub struct Facts {
     /// Fields of free names, by line; not all can be told.
     pub fields: Vec<FieldUse>,
     pub gives: Gives,
+    pub(super) form: Form,
 }
 
 /// Looks at blocks with an interpreter of its own.
@@ -77,6 +80,25 @@ impl Checker {
         Ok(facts)
     }
 
+    /// A block that was looked at, compiled with those of its free names as variables, each named once. One that is known
+    /// isn't compiled again.
+    ///
+    /// # Errors
+    /// There are more than 200 variables.
+    pub fn precompile(
+        &mut self,
+        code: &Arc<str>,
+        facts: &Arc<Facts>,
+        variables: &[&str],
+    ) -> Result<Arc<Precompiled>, SyntaxError> {
+        if let Some(precompiled) = self.known.precompiled(code, variables) {
+            return Ok(precompiled);
+        }
+        let precompiled = Arc::new(self.lua.precompile(code, facts, variables)?);
+        self.known.insert_precompiled(code, precompiled.clone());
+        Ok(precompiled)
+    }
+
     /// The fields of a library that every block has at hand, sorted; none where that isn't known of a name.
     pub fn fields(&self, library: &str) -> &'static [&'static str] {
         match self.access {
@@ -118,9 +140,9 @@ impl Lua {
     /// The text is neither an expression nor statements.
     pub fn facts(&mut self, code: &str) -> Result<Facts, SyntaxError> {
         // SAFETY: nothing runs, and there is no memory limit.
-        let (_, read) = self.unlimited(|lua| unsafe { source::analyse(lua.stack.state(), code) })?;
+        let (form, read) = self.unlimited(|lua| unsafe { source::analyse(lua.stack.state(), code) })?;
         let bytecode::Read { uses, fields, gives } = read;
-        let mut facts = Facts { fields, gives, ..Facts::default() };
+        let mut facts = Facts { fields, gives, form, ..Facts::default() };
         for Use { name, line, kind } in uses {
             match kind {
                 Kind::Read => facts.reads.push(NameUse { name, line }),

@@ -19,6 +19,7 @@ mod known;
 mod log;
 mod message;
 mod pattern;
+mod precompiled;
 mod registers;
 mod round;
 mod sandbox;
@@ -37,6 +38,7 @@ pub use facts::{Checker, Facts, NameUse, SYSTEM, known_fields, known_names};
 pub use failure::{Failure, FailureKind};
 pub use guard::Emergency;
 pub use log::{Level, LogLine};
+pub use precompiled::Precompiled;
 pub use registers::{FieldKind, FieldUse, Gives};
 pub use sandbox::Finder;
 pub use source::SyntaxError;
@@ -118,7 +120,6 @@ pub struct Lua {
     watchdog: Watchdog,
     stack: Stack,
     slots: Vec<Slot>,
-    chunks: u32,
     failure: Option<Failure>,
     limits: Limits,
     desk: Rc<Desk>,
@@ -144,7 +145,7 @@ impl Lua {
         let stack = Stack::new(&sandbox.mlua, guard.clone())?;
         sandbox.mlua.set_memory_limit(limits.memory)?;
         let watchdog = Watchdog::new(guard, stack.state());
-        Ok(Self { watchdog, stack, slots: Vec::new(), chunks: 0, failure: None, limits, desk, sandbox })
+        Ok(Self { watchdog, stack, slots: Vec::new(), failure: None, limits, desk, sandbox })
     }
 
     /// Does what Lua itself needs memory for, whatever variables hold.

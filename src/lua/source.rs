@@ -1,12 +1,12 @@
-//! From a block's text to a function on Lua's stack. Knows nothing of calls and values.
+//! From a block's text to Lua's bytecode, and to a function on Lua's stack. Knows nothing of calls and values.
 
-use std::ffi::{CString, c_int, c_void};
+use std::ffi::{c_int, c_void};
 use std::fmt::{self, Display};
 
 use mlua_sys as ffi;
 
 use super::bytecode::{self, Read};
-use super::desk::chunk_name;
+use super::desk::UNNAMED;
 use super::message;
 
 /// Why a text is no block.
@@ -45,9 +45,10 @@ impl Display for SyntaxError {
 impl std::error::Error for SyntaxError {}
 
 /// How a block's text is to be taken.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Form {
     Expression,
+    #[default]
     Statements,
 }
 
@@ -77,11 +78,18 @@ pub(super) unsafe fn analyse(state: *mut ffi::lua_State, code: &str) -> Result<(
                 Err(statements) => return Err(better(expression, statements)),
             },
         };
-        let mut dump = Vec::new();
+        Ok((form, bytecode::read(&take_dump(state)).unwrap_or_default()))
+    }
+}
+
+/// The function on top of the stack as bytecode; takes it off.
+unsafe fn take_dump(state: *mut ffi::lua_State) -> Vec<u8> {
+    let mut dump = Vec::new();
+    unsafe {
         ffi::lua_dump(state, write, (&raw mut dump).cast(), 0);
         ffi::lua_pop(state, 1);
-        Ok((form, bytecode::read(&dump).unwrap_or_default()))
     }
+    dump
 }
 
 /// Of the two reasons, that of the attempt that came further: a text like `a > ` was meant as an expression.
@@ -96,7 +104,7 @@ fn better(expression: SyntaxError, statements: SyntaxError) -> SyntaxError {
 }
 
 unsafe fn load_as(state: *mut ffi::lua_State, code: &str, form: Form) -> Result<(), SyntaxError> {
-    unsafe { load(state, &format!("{}{code}", form.begin()), 0) }
+    unsafe { load(state, format!("{}{code}", form.begin()).as_bytes(), Written::Text) }
 }
 
 /// Lua takes `\n\r` for one line's end, editors for two.
@@ -104,32 +112,49 @@ fn one_line_ends(code: &str) -> String {
     code.replace("\r\n", "\n").replace('\r', "\n")
 }
 
-/// Pushes the block's function, as one of a text in which `names` are locals: its upvalues, to be joined with the variables.
+/// The bytecode of a block's function, as one of a text in which `names` are locals: its upvalues, to be joined with the
+/// variables. Leaves the stack as it was.
 ///
 /// # Safety
-/// As for `analyse`; the chunk's id is `id`.
+/// As for `analyse`.
 pub(super) unsafe fn build(
     state: *mut ffi::lua_State,
     code: &str,
     form: Form,
     names: &[&str],
-    id: u32,
-) -> Result<(), SyntaxError> {
+) -> Result<Vec<u8>, SyntaxError> {
     let locals = if names.is_empty() { String::new() } else { format!("local {} ", names.join(",")) };
     let text = format!("{locals}return function() {}{}\nend", form.begin(), one_line_ends(code));
     unsafe {
-        load(state, &text, id)?;
+        load(state, text.as_bytes(), Written::Text)?;
         match ffi::lua_pcallk(state, 0, 1, 0, 0, None) {
-            ffi::LUA_OK => Ok(()),
+            ffi::LUA_OK => Ok(take_dump(state)),
             _ => Err(take_error(state)),
         }
     }
 }
 
-unsafe fn load(state: *mut ffi::lua_State, text: &str, id: u32) -> Result<(), SyntaxError> {
-    let Ok(name) = CString::new(chunk_name(id)) else { unreachable!("a chunk's name is a mark and digits") };
+/// Pushes the function of a block's bytecode; each of its upvalues is one of its own.
+///
+/// # Safety
+/// As for `analyse`; the bytecode was made by `build`, and is whole.
+pub(super) unsafe fn load_built(state: *mut ffi::lua_State, bytecode: &[u8]) -> Result<(), SyntaxError> {
+    unsafe { load(state, bytecode, Written::Bytecode) }
+}
+
+#[derive(Clone, Copy)]
+enum Written {
+    Text,
+    Bytecode,
+}
+
+unsafe fn load(state: *mut ffi::lua_State, chunk: &[u8], written: Written) -> Result<(), SyntaxError> {
+    let mode = match written {
+        Written::Text => c"t",
+        Written::Bytecode => c"b",
+    };
     unsafe {
-        match ffi::luaL_loadbufferx(state, text.as_ptr().cast(), text.len(), name.as_ptr(), c"t".as_ptr()) {
+        match ffi::luaL_loadbufferx(state, chunk.as_ptr().cast(), chunk.len(), UNNAMED.as_ptr(), mode.as_ptr()) {
             ffi::LUA_OK => Ok(()),
             _ => Err(take_error(state)),
         }

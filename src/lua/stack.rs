@@ -6,7 +6,7 @@
 //!
 //! The stack holds one value in each slot and nothing above but what a call needs; every method leaves it like that.
 
-use std::ffi::{c_int, c_void};
+use std::ffi::{CStr, c_int, c_void};
 use std::sync::Arc;
 
 use mlua_sys as ffi;
@@ -232,7 +232,8 @@ impl Stack {
         }
     }
 
-    /// Makes the upvalues of the function on top of the stack variables: `cell` says which, by the upvalue's name.
+    /// Makes the upvalues of the function on top of the stack variables: `cell` says which, by the upvalue's name. The
+    /// one that is none is its environment.
     pub fn join(&self, cell: impl Fn(&str) -> Option<u32>) {
         for upvalue in 1.. {
             // SAFETY: the function is on top; the slots hold variables.
@@ -242,8 +243,11 @@ impl Stack {
                     return;
                 }
                 ffi::lua_pop(self.state, 1);
-                if let Some(cell) = std::ffi::CStr::from_ptr(name).to_str().ok().and_then(&cell) {
+                if let Some(cell) = CStr::from_ptr(name).to_str().ok().and_then(&cell) {
                     ffi::lua_upvaluejoin(self.state, -1, upvalue, cell as c_int, 1);
+                } else {
+                    ffi::lua_pushglobaltable(self.state);
+                    ffi::lua_setupvalue(self.state, -2, upvalue);
                 }
             }
         }

@@ -24,7 +24,7 @@ pub fn resolve_blocks(program: &mut Program, checker: &mut Checker) {
         };
         let names = Names::of(program);
         let (mut reads, mut writes) = (Vec::new(), Vec::new());
-        let mut missing = Vec::new();
+        let (mut missing, mut variables) = (Vec::new(), Vec::<&str>::new());
         let mut unknown: Vec<&str> = Vec::new();
         let read = facts.reads.iter().map(|name| (name, Access::Read));
         for (name, access) in read.chain(facts.writes.iter().map(|name| (name, Access::Write))) {
@@ -34,6 +34,7 @@ pub fn resolve_blocks(program: &mut Program, checker: &mut Checker) {
             };
             let var = names.var(block.machine, &name.name);
             known.extend(var.filter(|var| !known.contains(var)));
+            variables.extend(var.and(Some(&*name.name)).filter(|name| !variables.contains(name)));
             if !program.is_called(var, &name.name) && !unknown.contains(&&*name.name) {
                 unknown.push(&name.name);
                 let finding = unknown_name(program, index, name, access, &at_hand);
@@ -41,7 +42,10 @@ pub fn resolve_blocks(program: &mut Program, checker: &mut Checker) {
                 found.extend(finding);
             }
         }
+        // What Lua refuses only now is found by the one that runs it.
+        let precompiled = checker.precompile(&program.blocks[index].code, &facts, &variables).ok();
         let block = &mut program.blocks[index];
+        block.precompiled = precompiled;
         block.uses = reads.iter().copied().chain(writes.iter().copied().filter(|var| !reads.contains(var))).collect();
         (block.reads, block.writes, block.missing, block.facts) = (reads, writes, missing, facts);
     }

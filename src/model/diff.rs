@@ -218,7 +218,11 @@ fn numbered_key(program: &Program, id: TransitionId) -> Arc<str> {
     let transition = &program[id];
     let key = transition_key(program, transition);
     let before = program[transition.machine].transitions.iter().take_while(|&&other| other != id);
-    match before.filter(|&&other| transition_key(program, &program[other]) == key).count() {
+    // Most differ in what is quickly compared.
+    let alike = before.map(|&other| &program[other]).filter(|other| {
+        other.kind == transition.kind && other.target_name == transition.target_name && other.name == transition.name
+    });
+    match alike.filter(|other| transition_key(program, other) == key).count() {
         0 => key.into(),
         twins => format!("{key} #{}", twins + 1).into(),
     }

@@ -5,7 +5,7 @@ use std::sync::Arc;
 
 use super::element::Alias;
 use super::ids::*;
-use crate::lua::Facts;
+use crate::lua::{Facts, Precompiled};
 use crate::syntax::{Diagnostic, FileId, Source, Span};
 
 /// Elements that refer to something that doesn't exist keep the name as written and are skipped when run.
@@ -175,6 +175,8 @@ pub struct Block {
     pub missing: Vec<Arc<str>>,
     /// What can be said of its text alone; nothing where that isn't Lua.
     pub facts: Arc<Facts>,
+    /// Its text compiled, as far as that can be done without the interpreter that will run it.
+    pub precompiled: Option<Arc<Precompiled>>,
     /// The Lua files it requires by a literal name, also through other ones; sorted.
     pub requires: Vec<ModuleId>,
 }

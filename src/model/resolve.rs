@@ -143,6 +143,7 @@ impl<'t> Resolver<'t> {
             writes: Vec::new(),
             missing: Vec::new(),
             facts: Arc::default(),
+            precompiled: None,
             requires: Vec::new(),
         });
         id

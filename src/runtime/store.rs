@@ -157,7 +157,10 @@ impl Store {
         let own = block.uses.iter().map(|&var| (&*program[var].name, self.cell(var)));
         // What is really called so counts before what was.
         let bound: Vec<(&str, Cell)> = renamed.chain(own).collect();
-        let function = self.lua.compile(&block.code, &bound)?;
+        let function = match &block.precompiled {
+            Some(precompiled) => self.lua.load(precompiled, &bound)?,
+            None => self.lua.compile(&block.code, &bound)?,
+        };
         Ok(Compiled { lua: Some(function), ..Compiled::default() })
     }
 }

@@ -6,7 +6,7 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 use super::large::{Edit, Size, program};
-use lrp::model;
+use lrp::model::{self, Program};
 use lrp::runtime::{Command, Options, Time};
 use lrp::session::compile::Compiler;
 use lrp::session::driver::Driver;
@@ -30,14 +30,17 @@ pub fn gaps(size: Size, blocks: Option<usize>) -> Vec<Duration> {
 
 fn compile(saves: &Receiver<String>, compiled: &Sender<Command>) {
     let mut compiler = Compiler::new(Vec::new());
-    let mut running = Arc::default();
+    let mut running: Arc<Program> = Arc::default();
+    let mut ran = Arc::default();
     for text in saves {
+        // Kept until the next save, as in a session, so that it is dropped here and not on the engine's thread.
+        drop(std::mem::replace(&mut ran, Arc::clone(&running)));
         let Ok(program) = compiler.compile(Source::new("large.lrp", text)) else {
             unreachable!("the large program is one")
         };
-        // Nobody waits for the last one.
         let edit = model::Edit::of(&running, program);
         running = Arc::clone(&edit.program);
+        // Nobody waits for the last one.
         let _ = compiled.send(Command::Load(edit));
     }
 }

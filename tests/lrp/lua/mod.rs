@@ -4,6 +4,7 @@ mod blocks;
 mod facts;
 mod limits;
 mod patterns;
+mod precompiled;
 mod rounds;
 mod sandbox;
 mod values;
