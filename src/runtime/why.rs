@@ -207,7 +207,9 @@ impl Engine {
             outgoing.iter().chain(exits).position(|&other| other == id)
         };
         match &running.decided {
-            Some(fired) if fired.transition == way => Finding { after: self.length(way), ..Finding::plain(Answer::True) },
+            Some(fired) if fired.transition == way => {
+                Finding { after: self.length(way), ..Finding::plain(Answer::True) }
+            }
             Some(fired) if order(way) > order(fired.transition) => {
                 Finding::with(Answer::Unseen, "an earlier one fires first")
             }

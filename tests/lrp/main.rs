@@ -42,3 +42,4 @@ mod tracer;
 mod view;
 mod walk;
 mod watch;
+mod why;

@@ -105,7 +105,8 @@ impl View {
         let cause = self.transition(taken);
         let place = cause.and_then(|cause| self.place_of(cause));
         let evidence = cause.map_or_else(Vec::new, |cause| self.evidence_for(cause));
-        let cause = Cause { name: taken.name.clone(), transition: cause.map(|id| (self.loads, id)), evidence };
+        let transition = cause.map(|id| (self.loads, id));
+        let cause = Cause { trigger: taken.trigger.clone(), name: taken.name.clone(), transition, evidence };
         self.journal.add(t, Kind::Change(cause), text, state.into(), place);
     }
 
