@@ -138,8 +138,8 @@ impl<'p> Both<'p> {
         let removed = ids(old).filter(|&was| matching.transition(was).is_none());
         let added = ids(new).filter(|&now| matching.transition_was(now).is_none());
         let change = |op| move |path| Change { op, kind: Element::Transition, path, to: None };
-        let mut changes: Vec<Change> = removed.map(|was| numbered_key(old, was)).map(change(Op::Removed)).collect();
-        changes.extend(added.map(|now| numbered_key(new, now)).map(change(Op::Added)));
+        let mut changes: Vec<Change> = removed.map(|was| transition_name(old, was)).map(change(Op::Removed)).collect();
+        changes.extend(added.map(|now| transition_name(new, now)).map(change(Op::Added)));
         changes
     }
 
@@ -213,8 +213,8 @@ fn compare<K: Hash + Eq, T: PartialEq>(kind: Element, old: Vec<Listed<K, T>>, ne
     removed.chain(rest).collect()
 }
 
-/// Of equal transitions, the second and later ones have a number.
-fn numbered_key(program: &Program, id: TransitionId) -> Arc<str> {
+/// As lists of changes and breakpoints name it: of equal transitions, the second and later ones have a number.
+pub fn transition_name(program: &Program, id: TransitionId) -> Arc<str> {
     let transition = &program[id];
     let key = transition_key(program, transition);
     let before = program[transition.machine].transitions.iter().take_while(|&&other| other != id);

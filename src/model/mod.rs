@@ -19,9 +19,11 @@ pub mod matching;
 pub mod modules;
 pub mod names;
 pub mod program;
+pub mod reads;
 pub mod renamed;
 pub mod resolve;
 mod suggestion;
+pub mod ways;
 mod words;
 
 pub use description::Description;

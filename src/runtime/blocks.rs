@@ -6,7 +6,7 @@ use std::sync::Arc;
 use super::engine::Engine;
 use super::faults::Happening;
 use super::plan::{Calls, Plan};
-use super::record::{Log, What};
+use super::record::{Answer, Log, What};
 use crate::lua::{self, Failure, FailureKind, Num, Ran};
 use crate::model::blocks::{Role, place};
 use crate::model::*;
@@ -74,6 +74,7 @@ impl Engine {
             Num::NotNumber(kind) => {
                 let span = self.program[block].span;
                 let message = format!("a timeout is a number of milliseconds, but this block gives {kind}");
+                self.why.note_amiss(block, self.step, Answer::Error, &message);
                 self.block_fault(block, Code::NotMilliseconds, span, message, None);
                 None
             }
@@ -175,6 +176,7 @@ impl Engine {
         if code != Code::Runtime {
             self.store.stop(block);
         }
+        self.why.note_amiss(block, self.step, Answer::Error, &failure.message);
         let span = self.failure_span(block, &failure);
         match self.found_before(block, &failure) {
             Some(found) => self.block_fault(block, found.code, found.span, found.message, found.help),
@@ -217,6 +219,9 @@ impl Engine {
 
     /// Not a mistake: the robot has not spoken, or not lately. Said once for each input.
     fn waiting_for_message(&mut self, block: BlockId, failure: &Failure, missing: super::robot::NoMessage) {
+        let super::robot::NoMessage { bridge, input, why } = &missing;
+        let lacks = format!("`{bridge}.{input}` {why}");
+        self.why.note_amiss(block, self.step, Answer::NoMessage, &lacks);
         // Before the first step nothing can have come.
         if self.step == 0 || !self.robots.is_news(&missing) {
             return;
@@ -224,8 +229,7 @@ impl Engine {
         let span = self.failure_span(block, failure);
         let source = self.program.source(span);
         let line = source.line(span.start as usize);
-        let super::robot::NoMessage { bridge, input, why } = &missing;
-        let message = format!("`{bridge}.{input}` {why}; what needs it is skipped until one comes");
+        let message = format!("{lacks}; what needs it is skipped until one comes");
         let log = Log {
             level: super::record::Level::Info,
             message,
@@ -238,6 +242,8 @@ impl Engine {
 
     #[cold]
     fn not_boolean(&mut self, block: BlockId, kind: &str) {
+        let message = format!("it gives {kind}, not true or false");
+        self.why.note_amiss(block, self.step, Answer::NotBoolean, &message);
         let known =
             |finding: &Diagnostic| matches!(finding.code, Code::EventAssigns | Code::Smalltalk) && finding.is_error();
         if let Some(found) = self.found_in(block, known) {

@@ -62,6 +62,10 @@ pub enum Command {
     OnError {
         mode: OnError,
     },
+    /// Whether it is told what the guards of active states come to.
+    Explain {
+        mode: Explain,
+    },
     /// Stops the robot and pauses. The session has told the bridges before the engine sees it.
     Runstop,
     /// A file beside the program has another text: a world, or a Lua file that a block requires.
@@ -130,4 +134,13 @@ pub enum OnError {
     #[default]
     Continue,
     Pause,
+}
+
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Explain {
+    #[default]
+    Off,
+    /// Whenever that has changed, at most ten times a second of program time, and at each step while paused.
+    On,
 }

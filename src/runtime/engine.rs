@@ -74,12 +74,15 @@ pub struct Engine {
     pub(super) faults: Faults,
     pub(super) changes: super::changes::Changes,
     pub(super) breakpoints: Breakpoints,
+    pub(super) why: super::why::Why,
 }
 
 /// A machine that runs: where it is and what it has spawned there.
 pub(super) struct Running {
     pub state: StateId,
     pub entered: Time,
+    /// The step from which on its guards have been looked at.
+    pub tested: u64,
     /// The name of the state that it was started in.
     pub start: Arc<str>,
     pub nested: Vec<MachineId>,
@@ -89,7 +92,7 @@ pub(super) struct Running {
 
 impl Running {
     pub fn new(state: StateId, entered: Time, start: Arc<str>) -> Running {
-        Running { state, entered, start, nested: Vec::new(), decided: None }
+        Running { state, entered, tested: u64::MAX, start, nested: Vec::new(), decided: None }
     }
 }
 
@@ -115,6 +118,7 @@ impl Engine {
             faults: Faults::default(),
             changes: super::changes::Changes::default(),
             breakpoints: Breakpoints::default(),
+            why: super::why::Why::default(),
         };
         engine.library(|name| Err(format!("module '{name}' is not found")));
         engine
@@ -165,6 +169,9 @@ impl Engine {
         }
         if self.held.is_some() {
             self.tell_held_again();
+        }
+        if self.why.is_asked() {
+            self.tell_guards();
         }
     }
 

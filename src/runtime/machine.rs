@@ -99,7 +99,11 @@ impl Engine {
                 }
                 ms.is_some_and(|ms| self.is_due(machine, ms))
             }
-            Test::AfterBlock(block) => self.milliseconds(block).is_some_and(|ms| self.is_due(machine, ms)),
+            Test::AfterBlock(block) => {
+                let ms = self.milliseconds(block);
+                self.why.note_length(block, ms);
+                ms.is_some_and(|ms| self.is_due(machine, ms))
+            }
         };
         due.then_some(0)
     }
@@ -182,6 +186,7 @@ impl Engine {
         if let Some(running) = &mut self.running[machine.index()] {
             running.state = state;
             running.entered = self.now;
+            running.tested = self.step + 1;
             running.decided = None;
         }
         self.visits[state.index()] += 1;
@@ -245,10 +250,12 @@ impl Engine {
         if plan.running(state).is_empty() && self.nested_count(machine) == 0 {
             return;
         }
-        if let Some(fired) = self.firing(plan, machine, state) {
-            if let Some(running) = &mut self.running[machine.index()] {
-                running.decided = Some(fired);
-            }
+        let fired = self.firing(plan, machine, state);
+        if let Some(running) = &mut self.running[machine.index()] {
+            running.tested = self.step;
+            running.decided = fired;
+        }
+        if fired.is_some() {
             return;
         }
         self.run_all(plan, plan.running(state));

@@ -24,8 +24,9 @@ mod reuse;
 mod robot;
 mod store;
 pub mod time;
+mod why;
 
-pub use command::{BreakAt, Breaking, Command, OnEdit, OnError, Saves};
+pub use command::{BreakAt, Breaking, Command, Explain, OnEdit, OnError, Saves};
 pub use engine::{Engine, Input, Options};
 pub use obey::Refused;
 pub use record::{Record, What};

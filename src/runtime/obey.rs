@@ -51,6 +51,7 @@ impl Engine {
             Command::OnEdit { mode } => self.on_edit = mode,
             Command::Saves { mode } => self.saves = mode,
             Command::OnError { mode } => self.on_error = mode,
+            Command::Explain { mode } => self.why.ask(mode),
             Command::Reject { findings } => self.rare(What::Reject { findings }),
             Command::Pause => self.pause("asked for", None),
             Command::Runstop => self.pause("runstop", None),

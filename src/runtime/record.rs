@@ -51,6 +51,11 @@ pub enum What {
         state: Path,
     },
     Transition(Taken),
+    /// What the guards of an active state came to, while that is asked for.
+    Guards {
+        state: Path,
+        ways: Vec<Way>,
+    },
     /// A machine is no longer running.
     Discard {
         machine: Path,
@@ -128,6 +133,7 @@ impl What {
         "enter",
         "exit",
         "transition",
+        "guards",
         "discard",
         "set",
         "input",
@@ -224,6 +230,34 @@ pub struct Taken {
     pub via: Option<Path>,
     /// Where it is written, for drawings: which of the machine's transitions, from 0 in the order written.
     pub index: u32,
+}
+
+/// A transition that may lead out of a state, and what its guard came to when it was last looked at.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Way {
+    /// As lists of changes name it.
+    pub transition: Path,
+    pub guard: Answer,
+    /// Of a timeout: ms since its machine's state was entered, after which it is due.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub after: Option<f64>,
+    /// What is wrong with it, or why it wasn't looked at.
+    #[serde(skip_serializing_if = "Option::is_none", default)]
+    pub message: Option<String>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Answer {
+    /// It is taken in the next step.
+    True,
+    False,
+    NotBoolean,
+    Error,
+    /// It needs a message that a robot hasn't sent.
+    NoMessage,
+    /// It wasn't looked at.
+    Unseen,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -14,6 +14,7 @@ mod report;
 mod search;
 mod suite;
 mod value;
+mod why;
 mod written;
 
 use std::io::{self, Write};

@@ -37,6 +37,7 @@ pub enum Action {
     SwitchOnError,
     OpenEditor,
     Inspect,
+    WhyNot,
     Follow,
     NextPane,
     PreviousPane,
@@ -50,6 +51,7 @@ pub enum Action {
     ToggleWorld,
     Zoom,
     Filter,
+    OnlyMachine,
     Back,
     Help,
     Quit,
@@ -159,10 +161,12 @@ table! {
     Action::Focus(Pane::Variables), "variables", ["3"], "", "the variables", Looking, Reach::Screen;
     Action::Focus(Pane::Log), "log", ["4"], "", "the log", Looking, Reach::Screen;
     Action::Focus(Pane::World), "world", ["5"], "", "the simulated world", Looking, Reach::Screen;
+    Action::WhyNot, "why-not", ["y"], "why", "why not: what each way out of the state waits for, and back", Looking, Reach::Screen;
     Action::ToggleWorld, "toggle-world", ["w"], "world", "the world for the drawing, and back", Looking, Reach::Screen;
     Action::Inspect, "inspect", ["i"], "inspect", "all about what is selected, and back", Looking, Reach::Screen;
     Action::Zoom, "zoom", ["z"], "", "the focused pane alone, and back", Looking, Reach::Screen;
-    Action::Filter, "filter", ["v"], "filter", "the log: all, no transitions, warnings", Looking, LOG;
+    Action::Filter, "filter", ["v"], "filter", "the log: all, transitions, the rest, warnings", Looking, LOG;
+    Action::OnlyMachine, "only-machine", ["m"], "", "the log: only the selected machine, or all", Looking, LOG;
     Action::OpenEditor, "open-editor", ["o"], "open", "open your editor at the selected line", Looking, Reach::Screen;
     Action::OpenEditor, "open-editor-at-log", ["Enter"], "", "open your editor at the line", Looking, LOG;
     Action::Back, "back", ["Esc"], "", "leave: typing, help, full screen, detail", Looking, Reach::Screen;

@@ -247,6 +247,7 @@ impl App {
         self.selected = self.selected.as_ref().map(|path| renames.place(path));
         self.folded = self.folded.iter().map(|path| renames.place(path)).collect();
         self.value = self.value.as_ref().map(|path| renames.variable(path));
+        self.reading.only = self.reading.only.as_ref().map(|path| renames.place(path));
         if let Some((path, _)) = &mut self.nudged {
             *path = renames.variable(path);
         }
@@ -266,6 +267,7 @@ impl App {
         let first = || now.tops.first().map(|&machine| now[machine].path.clone());
         self.selected = kept.or_else(first);
         self.folded.retain(|path| tree::element(&now, path).is_some());
+        self.reading.only.take_if(|path| now.machine(path).is_none());
         self.settle();
     }
 

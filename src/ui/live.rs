@@ -17,7 +17,7 @@ use super::input::{Hold, Input, Received};
 use super::terminal::Screen;
 use super::theme::Theme;
 use super::view::Choices;
-use crate::runtime::{Command, Record};
+use crate::runtime::{Command, Explain, Record};
 use crate::session::engine_thread::{End, News};
 use crate::session::headless::STUCK;
 use crate::session::live::{Session, Setup};
@@ -77,7 +77,18 @@ fn live(setup: Setup, trace: Option<PathBuf>) -> Result<ExitCode, String> {
     let stop = session.commands().clone();
     let screen = Screen::enter(move || stop.halt()).map_err(|error| error.to_string())?;
     let input = Input::read(send(&happened, Happened::Terminal)).map_err(|error| error.to_string())?;
-    let mut live = Live { app, screen, session, input, trace, happened, held: None, warned: false, failed: None };
+    let mut live = Live {
+        app,
+        screen,
+        session,
+        input,
+        trace,
+        happened,
+        held: None,
+        warned: false,
+        failed: None,
+        explain: Explain::Off,
+    };
     let code = live.run(&inbox);
     let Live { screen, session, failed, mut trace, .. } = live;
     drop(session);
@@ -116,6 +127,8 @@ struct Live {
     warned: bool,
     /// What went wrong in lrp itself.
     failed: Option<String>,
+    /// What the engine was asked for last.
+    explain: Explain,
 }
 
 /// What becomes of the loop.
@@ -130,6 +143,7 @@ impl Live {
         let mut drawn: Option<Instant> = None;
         let mut at_once = true;
         loop {
+            self.ask();
             if self.app.dirty() && (at_once || drawn.is_none_or(|drawn| drawn.elapsed() >= FRAME)) {
                 if let Err(gone) = self.draw() {
                     return self.terminal_gone(&gone);
@@ -155,6 +169,14 @@ impl Live {
                 }
                 next = inbox.try_recv().ok();
             }
+        }
+    }
+
+    /// Guards are told only while somebody sees them.
+    fn ask(&mut self) {
+        let mode = self.app.explain();
+        if std::mem::replace(&mut self.explain, mode) != mode {
+            self.session.commands().send(Command::Explain { mode });
         }
     }
 

@@ -62,6 +62,11 @@ fn breakpoints_work() {
 }
 
 #[test]
+fn a_test_can_ask_why_not() {
+    check("why");
+}
+
+#[test]
 fn failed_expectations_tell_what_was_seen() {
     check("expectations");
 }

@@ -80,6 +80,7 @@ fn kind(what: &What) -> &'static str {
         What::Enter { .. } => "enter",
         What::Exit { .. } => "exit",
         What::Transition(_) => "transition",
+        What::Guards { .. } => "guards",
         What::Discard { .. } => "discard",
         What::Set { .. } => "set",
         What::Input { .. } => "input",

@@ -324,7 +324,7 @@ fn breakpoints_are_set_where_a_person_is() {
     toggle("Down B", state("follower/moving"), Breaking::Set);
     toggle("Down Down B", state("follower/looking"), Breaking::Clear);
     let transition = |text: &str| BreakAt::Transition { transition: text.into() };
-    toggle("Down i Tab Down Down Down Down Down B", transition(OUT_OF_LINE), Breaking::Clear);
+    toggle("Down i Tab Down Down Down B", transition(OUT_OF_LINE), Breaking::Clear);
     let sweep = "follower/looking/lookalgo: ontime time returnleft -> lookright tlookright";
     toggle("4 Down Down B", transition(sweep), Breaking::Set);
     let condition = BreakAt::Condition { condition: "nobump".into(), machine: "follower".into() };

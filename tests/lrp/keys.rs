@@ -160,7 +160,7 @@ fn the_log_says_what_the_filter_hides() {
     let mut story = Story::new();
     story.at(1).tell(What::Resume);
     let mut app = screen(80, 24, &story);
-    press(&mut app, "4 v v");
+    press(&mut app, "4 v v v");
     assert!(frame(&app).contains("No warnings or errors (v shows all)."));
 }
 

@@ -1,6 +1,6 @@
 //! A record as one readable line: `5 500 enter esc/tock`.
 
-use lrp::runtime::record::{Breakpoint, Change, Fault, Finding, Forced, Held, Load, Log, Op, Taken};
+use lrp::runtime::record::{Breakpoint, Change, Fault, Finding, Forced, Held, Load, Log, Op, Taken, Way};
 use lrp::runtime::{Command, Record, What};
 
 /// With a line's end. Texts of programs are left out.
@@ -21,6 +21,9 @@ pub fn line(record: &Record) -> String {
         What::Enter { state } => format!("enter {state}"),
         What::Exit { state } => format!("exit {state}"),
         What::Transition(taken) => transition(taken),
+        What::Guards { state, ways } => {
+            format!("guards {state}{}", ways.iter().map(|it| format!("\n    {}", way(it))).collect::<String>())
+        }
         What::Discard { machine } => format!("discard {machine}"),
         What::Set { var, value, by } => format!("set {var} = {value} by {by}"),
         What::Input { bridge, name, value } => format!("input {bridge}.{name} {value}"),
@@ -117,6 +120,7 @@ fn commanded(command: &Command) -> String {
         Command::DropHeld => "drop-held".into(),
         Command::Break { at, mode } => format!("{} break at {at}", format!("{mode:?}").to_lowercase()),
         Command::OnError { mode } => format!("on-error {mode:?}").to_lowercase(),
+        Command::Explain { mode } => format!("explain {mode:?}").to_lowercase(),
     }
 }
 
@@ -124,6 +128,14 @@ fn transition(taken: &Taken) -> String {
     let name = taken.name.as_ref().map(|name| format!(" ({name})")).unwrap_or_default();
     let via = taken.via.as_ref().map(|via| format!(" via {via}")).unwrap_or_default();
     format!("transition {}: {} -> {} by {}{name}{via}", taken.machine, taken.from, taken.to, taken.trigger)
+}
+
+/// `m: on go a -> b = false`
+pub fn way(way: &Way) -> String {
+    let after = way.after.map(|ms| format!(" after {ms}")).unwrap_or_default();
+    let message = way.message.as_ref().map(|message| format!(" ({message})")).unwrap_or_default();
+    let answer = serde_json::to_value(way.guard).expect("an answer is data");
+    format!("{} = {}{after}{message}", way.transition, answer.as_str().expect("a word"))
 }
 
 fn logged(log: &Log) -> String {

@@ -43,3 +43,4 @@ mod tracer;
 mod view;
 mod walk;
 mod watch;
+mod why;

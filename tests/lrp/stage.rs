@@ -6,7 +6,7 @@ use std::time::Duration;
 
 use lrp::lua::Limits;
 use lrp::model::Edit;
-use lrp::runtime::{BreakAt, Breaking, Command, Engine, Input, OnEdit, OnError, Options, Record, Saves, Time};
+use lrp::runtime::{BreakAt, Breaking, Command, Engine, Explain, Input, OnEdit, OnError, Options, Record, Saves, Time};
 use lrp::session::compile::{Compiler, Rejected};
 use lrp::session::driver::Driver;
 use lrp::session::findings;
@@ -257,6 +257,7 @@ pub fn read_event(text: &str) -> Event {
         "break" => Command::Break { at: place(rest), mode: Breaking::Set },
         "clear" => Command::Break { at: place(rest), mode: Breaking::Clear },
         "on-error" => Command::OnError { mode: if rest == "pause" { OnError::Pause } else { OnError::Continue } },
+        "explain" => Command::Explain { mode: if rest == "on" { Explain::On } else { Explain::Off } },
         _ => panic!("`{what}` is nothing that happens"),
     })
 }

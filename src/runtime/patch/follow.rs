@@ -16,7 +16,7 @@ impl Engine {
         for (index, was) in std::mem::take(&mut self.running).into_iter().enumerate() {
             let machine = passage.matching.machine(MachineId(index as u32));
             if let (Some(was), Some(machine)) = (was, machine) {
-                running[machine.index()] = passage.running(was);
+                running[machine.index()] = passage.running(was, self.step + 1);
             }
         }
         for again in &verdict.again {
@@ -43,11 +43,13 @@ impl Engine {
 }
 
 impl Passage<'_> {
-    fn running(&self, was: Running) -> Option<Running> {
+    /// Its guards may be others now: they are looked at in step `tested`.
+    fn running(&self, was: Running, tested: u64) -> Option<Running> {
         let state = self.matching.state(was.state)?;
         Some(Running {
             state,
             entered: was.entered,
+            tested,
             start: self.start(self.old[was.state].machine, was.start),
             nested: self.machines(&was.nested),
             decided: was.decided.and_then(|fired| self.decided(was.state, state, fired)),

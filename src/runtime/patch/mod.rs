@@ -40,6 +40,7 @@ impl Engine {
         let still = self.faults_that_stand(&passage);
         self.plan = Rc::new(Plan::of(&new, &self.store));
         self.changes.follow(&new);
+        self.why.begin_anew(&new);
         self.program = Arc::clone(&new);
         let changes = if first { Vec::new() } else { changes.clone() };
         self.rare(What::Load(loaded(&new, changes, &verdict)));

@@ -11,6 +11,7 @@ use super::failure::{Complaint, Situation};
 use super::message::{self, Direction, hint};
 use super::options::Options;
 use super::readable;
+use super::why::{self, WayOut};
 use super::written::Written;
 use crate::model::{Description, Edit, Program, Robot};
 use crate::runtime::record::{Breakpoint, Fault, Finding, Held};
@@ -257,8 +258,19 @@ impl Bench {
     pub fn expect_active(&self, path: &str) -> Result<(), Complaint> {
         match self.is_active(path)? {
             true => Ok(()),
-            false => Err(Complaint::new(format!("expected `{path}` to be active"))),
+            false => {
+                let complaint = Complaint::new(format!("expected `{path}` to be active"));
+                let ways = self.ways_to(path);
+                Err(if ways.is_empty() { complaint } else { complaint.seen(ways.join("\n")) })
+            }
         }
+    }
+
+    /// What the transitions to a state from the one that is active beside it wait for.
+    fn ways_to(&self, path: &str) -> Vec<String> {
+        let Some((machine, state)) = path.rsplit_once('/') else { return Vec::new() };
+        let ways = self.why(machine).unwrap_or_default().into_iter();
+        ways.filter(|way| way.leads_to(state)).map(|way| way.to_string()).collect()
     }
 
     fn no_state(&self, path: &str) -> Complaint {
@@ -297,6 +309,19 @@ impl Bench {
             }
         }
         troubles
+    }
+
+    /// The ways out of a state, or of the one that is active in a machine, with what their guards came to last.
+    pub fn why(&self, path: &str) -> Result<Vec<WayOut>, Complaint> {
+        let engine = self.driver.engine();
+        let program = engine.program();
+        let active = || engine.active().into_iter().find(|state| state.rsplit_once('/').is_some_and(|it| it.0 == path));
+        let state = match program.machine(path) {
+            Some(_) => active().ok_or_else(|| Complaint::new(format!("`{path}` is not running")))?,
+            None => path.to_string(),
+        };
+        let state = program.state(&state).ok_or_else(|| self.no_state(path))?;
+        Ok(why::ways(engine, &self.records, state))
     }
 
     pub fn situation(&self) -> Situation {

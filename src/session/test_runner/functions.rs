@@ -133,6 +133,10 @@ impl Functions<'_> {
         })?;
         self.add("active()", |_, api, ()| Ok(api.with(|bench| Ok(bench.active()))?))?;
         self.add("is_active(path)", |_, api, path: String| Ok(api.with(|bench| bench.is_active(&path))?))?;
+        self.add("why(path)", |lua, api, path: String| {
+            let ways = api.with(|bench| bench.why(&path))?;
+            ways.iter().map(|way| to_lua(lua, &json!(way))).collect::<mlua::Result<Vec<Value>>>()
+        })?;
         self.add("held()", |lua, api, ()| {
             let held = api.with(|bench| Ok(bench.held().map(|held| json!(held))))?;
             held.map_or(Ok(Value::Nil), |held| to_lua(lua, &held))

@@ -72,6 +72,7 @@ fn what(what: &What) -> String {
         What::Enter { state } => format!("enter {state}"),
         What::Exit { state } => format!("exit {state}"),
         What::Transition(taken) => transition(taken),
+        What::Guards { state, .. } => format!("guards of {state}"),
         What::Discard { machine } => format!("discard {machine}"),
         What::Set { var, value, by } => format!("{var} = {} by {by}", text(value)),
         What::Input { bridge, name, value } => format!("{bridge}.{name} is {}", text(value)),
@@ -154,5 +155,6 @@ fn command(command: &Command) -> String {
         Command::Break { at, mode: Breaking::Set } => format!("break at {at}"),
         Command::Break { at, mode: Breaking::Clear } => format!("no break at {at}"),
         Command::OnError { mode } => format!("on error: {mode:?}").to_lowercase(),
+        Command::Explain { mode } => format!("explain: {mode:?}").to_lowercase(),
     }
 }

@@ -6,6 +6,7 @@ use ratatui::layout::Rect;
 
 use super::{App, Options, Overlay, Reading};
 use crate::model::{MachineId, Program};
+use crate::runtime::Explain;
 use crate::ui::action::Action;
 use crate::ui::layout::{Layout, Pane, Simulated, Wish};
 use crate::ui::panes::diagram::Diagram;
@@ -103,6 +104,11 @@ impl App {
     /// The line of the detail a person is at.
     pub fn detail_at(&self) -> usize {
         self.detail_at
+    }
+
+    /// Whether the engine is to tell what guards come to: while there is a place where that is seen.
+    pub fn explain(&self) -> Explain {
+        if self.shows_detail() { Explain::On } else { Explain::Off }
     }
 
     /// Whether a key does anything now: some only where there is something to do it with.

@@ -191,7 +191,7 @@ impl App {
     }
 
     /// The pane whose selection the detail tells of, where it has one.
-    fn take_as_subject(&mut self, pane: Pane) {
+    pub(super) fn take_as_subject(&mut self, pane: Pane) {
         if self.subject != pane && !matches!(pane, Pane::Detail | Pane::World) {
             self.subject = pane;
             self.detail_anew();
@@ -226,6 +226,10 @@ impl App {
         let wish = Wish { focus: Pane::Machines, extent: Extent::Shared, ..self.wish() };
         let layout = Layout::new(self.area(), wish);
         layout.map_or_else(Vec::new, |layout| layout.panes.iter().map(|&(pane, _)| pane).collect())
+    }
+
+    pub(super) fn shows_detail(&self) -> bool {
+        self.layout(self.area()).is_some_and(|layout| layout.area(Pane::Detail).is_some())
     }
 
     /// Rows a pane has for its list.

@@ -57,8 +57,10 @@ impl App {
             }
             Action::ToggleWorld => self.toggle(Figure::World),
             Action::Inspect => self.toggle(Figure::Detail),
+            Action::WhyNot => self.why_not(),
             Action::Zoom => self.zoom(),
             Action::Filter => self.reading.filter = self.reading.filter.next(),
+            Action::OnlyMachine => self.read_only_machine(),
             Action::Back => self.back(),
             Action::Breakpoints => self.overlay = Overlay::Breakpoints { at: 0 },
             Action::Help => self.overlay = Overlay::Help { top: 0 },
@@ -121,6 +123,15 @@ impl App {
         self.figure = figure;
         if Figure::of(self.focus).is_some() || self.is_beside_the_drawing(pane) || self.page(pane) <= 1 {
             self.focus_on(pane);
+        }
+    }
+
+    /// The detail of the state, whatever else it tells of now.
+    fn why_not(&mut self) {
+        let tells_of_other = matches!(self.subject, Pane::Variables | Pane::Log);
+        self.take_as_subject(Pane::Machines);
+        if !(tells_of_other && self.shows_detail()) {
+            self.toggle(Figure::Detail);
         }
     }
 

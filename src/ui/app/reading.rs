@@ -5,7 +5,7 @@ use super::movement::Move;
 use crate::runtime::record::Level;
 use crate::ui::layout::Pane;
 use crate::ui::panes::log;
-use crate::ui::view::{Entry, Gravity, Kind, ProblemKey, View};
+use crate::ui::view::{Entry, Gravity, Kind, Path, ProblemKey, View, name, within};
 
 /// Lines from which on a problem may take two.
 const TALL: usize = 4;
@@ -17,6 +17,8 @@ pub struct Reading {
     /// The pane's row the place is held at.
     pub row: usize,
     pub filter: Filter,
+    /// Only what belongs to this machine and what is in it.
+    pub only: Option<Path>,
     /// The number of the next entry when the place was taken.
     pub since: u64,
 }
@@ -31,6 +33,7 @@ pub enum LogRow {
 pub enum Filter {
     #[default]
     Everything,
+    Transitions,
     WithoutChanges,
     Warnings,
 }
@@ -38,24 +41,26 @@ pub enum Filter {
 impl Filter {
     pub fn next(self) -> Filter {
         match self {
-            Filter::Everything => Filter::WithoutChanges,
+            Filter::Everything => Filter::Transitions,
+            Filter::Transitions => Filter::WithoutChanges,
             Filter::WithoutChanges => Filter::Warnings,
             Filter::Warnings => Filter::Everything,
         }
     }
 
-    /// For the title.
-    pub fn label(self) -> &'static str {
+    fn label(self) -> &'static str {
         match self {
             Filter::Everything => "",
+            Filter::Transitions => "transitions",
             Filter::WithoutChanges => "without transitions",
             Filter::Warnings => "warnings only",
         }
     }
 
-    pub fn shows(self, entry: &Entry) -> bool {
+    fn shows(self, entry: &Entry) -> bool {
         match self {
             Filter::Everything => true,
+            Filter::Transitions => matches!(entry.kind, Kind::Change(_)),
             Filter::WithoutChanges => !matches!(entry.kind, Kind::Change(_)),
             Filter::Warnings => matches!(entry.kind, Kind::Log(Level::Warn | Level::Error)),
         }
@@ -67,10 +72,23 @@ impl Filter {
 }
 
 impl Reading {
+    pub fn shows(&self, entry: &Entry) -> bool {
+        self.filter.shows(entry) && self.only.as_ref().is_none_or(|machine| within(&entry.state, machine))
+    }
+
+    /// What is left out, for the title.
+    pub fn label(&self) -> String {
+        match (self.filter.label(), &self.only) {
+            ("", Some(machine)) => format!("only {}", name(machine)),
+            (label, Some(machine)) => format!("{label}, {}", name(machine)),
+            (label, None) => label.into(),
+        }
+    }
+
     /// The problems, then the entries with the newest first.
     pub fn rows(&self, view: &View) -> Vec<LogRow> {
         let problems = view.problems.iter().filter(|problem| self.filter.shows_problem(problem.gravity));
-        let entries = view.journal.newest_first().filter(|entry| self.filter.shows(entry));
+        let entries = view.journal.newest_first().filter(|entry| self.shows(entry));
         let problems = problems.map(|problem| LogRow::Problem(problem.key.clone()));
         problems.chain(entries.map(|entry| LogRow::Entry(entry.number))).collect()
     }
@@ -137,6 +155,12 @@ impl App {
         }
         self.reading.place = Some(rows[to].clone());
         self.detail_anew();
+    }
+
+    /// All machines again, or the selected one alone.
+    pub(super) fn read_only_machine(&mut self) {
+        let selected = self.program().zip(self.machine()).map(|(program, machine)| program[machine].path.clone());
+        self.reading.only = if self.reading.only.is_some() { None } else { selected };
     }
 
     pub(super) fn read_newest(&mut self) {

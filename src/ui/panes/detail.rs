@@ -1,8 +1,9 @@
-//! All about what is selected: a state with its actions and transitions, a variable with its history, a problem with its line.
+//! All about what is selected: a state with its actions and why it is not left, a variable with its history, a problem with its line.
 
 mod element;
 mod happening;
 mod value;
+mod ways;
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
@@ -25,7 +26,26 @@ pub struct Line {
     /// What it is about, where a breakpoint may be set at it.
     pub transition: Option<TransitionId>,
     pub tone: Tone,
+    /// What stands before the words of a transition.
+    pub lead: Lead,
 }
+
+/// A breakpoint's mark, then words in a column of their own.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Lead {
+    pub mark: &'static str,
+    pub text: String,
+    pub tone: Tone,
+}
+
+impl Default for Lead {
+    fn default() -> Lead {
+        Lead { mark: " ", text: String::new(), tone: Tone::Aside }
+    }
+}
+
+/// Columns of a transition's answer: `1:02:04`.
+const LEAD: u16 = 7;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Tone {
@@ -35,6 +55,8 @@ pub enum Tone {
     Code,
     Gravity(Gravity),
     Caret(Gravity),
+    /// It is about to happen.
+    Holds,
 }
 
 pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
@@ -52,13 +74,20 @@ pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
 }
 
 fn draw_line(app: &App, line: &Line, selected: bool, mut pen: Pen) {
-    let style = style(app, line.tone);
-    let indent = if matches!(line.tone, Tone::Heading | Tone::Gravity(_)) { "" } else { "  " };
-    pen.put_right(" ", style).put_right(&line.place, app.theme().dim());
-    pen.put(if selected { "▸" } else { " " }, app.theme().bold());
-    pen.put(indent, Style::new()).put(&line.text, style);
+    let (theme, style) = (app.theme(), style(app, line.tone));
+    pen.put_right(" ", style).put_right(&line.place, theme.dim());
+    pen.put(if selected { "▸" } else { " " }, theme.bold());
+    let Lead { mark, text, tone } = &line.lead;
+    match line.tone {
+        _ if line.transition.is_some() => {
+            pen.put(mark, theme.breakpoint()).column(text, LEAD, self::style(app, *tone));
+        }
+        Tone::Heading | Tone::Gravity(_) => (),
+        _ => _ = pen.put("  ", Style::new()),
+    }
+    pen.put(&line.text, style);
     if selected {
-        pen.wash(app.theme().selected());
+        pen.wash(theme.selected());
     }
 }
 
@@ -68,6 +97,7 @@ pub fn style(app: &App, tone: Tone) -> Style {
         Tone::Heading => theme.bold(),
         Tone::Text | Tone::Code => theme.normal(),
         Tone::Aside => theme.dim(),
+        Tone::Holds => theme.active(),
         Tone::Gravity(gravity) | Tone::Caret(gravity) => theme.gravity(gravity),
     }
 }
@@ -96,7 +126,7 @@ impl Page<'_> {
     }
 
     fn add_at(&mut self, tone: Tone, text: impl Into<String>, place: String) {
-        self.lines.push(Line { text: text.into(), place, transition: None, tone });
+        self.lines.push(Line { text: text.into(), place, transition: None, tone, lead: Lead::default() });
     }
 
     /// In as many lines as it needs.

@@ -9,7 +9,7 @@ use crate::ui::app::{App, Filter, LogRow, Shown};
 use crate::ui::format;
 use crate::ui::layout::Pane;
 use crate::ui::pen::Pen;
-use crate::ui::view::{Cause, Entry, Gravity, Kind, Problem, ProblemKey, name};
+use crate::ui::view::{Cause, Entry, Gravity, Kind, Problem, ProblemKey, name, owner, within};
 
 /// Columns from which on times and words stand with problems, where signs would do.
 const WIDE: u16 = 60;
@@ -19,7 +19,7 @@ const TIMED: u16 = 31;
 pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
     let shown = app.reading().window(app.view(), usize::from(area.height), |key| is_long(app, key, area.width));
     if shown.is_empty() {
-        draw_nothing(app, area, buffer, nothing(app));
+        draw_nothing(app, area, buffer, &nothing(app));
     }
     let mut y = 0;
     for Shown { row, lines } in &shown {
@@ -42,11 +42,16 @@ pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
     Title::new(title(app), note(app))
 }
 
-fn nothing(app: &App) -> &'static str {
-    match app.reading().filter {
-        Filter::Everything => "Nothing happened yet.",
-        Filter::WithoutChanges => "Nothing but transitions (v shows all).",
-        Filter::Warnings => "No warnings or errors (v shows all).",
+fn nothing(app: &App) -> String {
+    let nothing = match app.reading().filter {
+        Filter::Everything => "Nothing happened yet",
+        Filter::Transitions => "No transitions yet (v shows all)",
+        Filter::WithoutChanges => "Nothing but transitions (v shows all)",
+        Filter::Warnings => "No warnings or errors (v shows all)",
+    };
+    match &app.reading().only {
+        Some(machine) => format!("{nothing}, in {} (m shows all machines).", name(machine)),
+        None => format!("{nothing}."),
     }
 }
 
@@ -129,6 +134,9 @@ fn draw_entry(app: &App, entry: &Entry, place: Rect, buffer: &mut Buffer) {
     draw_time(app, &format::clock(entry.t), &mut pen);
     match &entry.kind {
         Kind::Log(level) => draw_log(app, entry, *level, place.width, &mut pen),
+        Kind::Change(cause) if place.width >= WIDE && app.reading().filter == Filter::Transitions => {
+            draw_in_columns(app, entry, cause, &mut pen);
+        }
         Kind::Change(cause) => draw_change(app, entry, cause, &mut pen),
         Kind::Hand(_) | Kind::Note => _ = pen.put(&entry.text, theme.normal()),
     }
@@ -149,6 +157,41 @@ fn draw_change(app: &App, entry: &Entry, cause: &Cause, pen: &mut Pen) {
         if pen.room() >= format::width(&name) {
             pen.put(&name, theme.dim());
         }
+    }
+}
+
+/// Machine, way, trigger and name below each other, in columns that hold still while the list moves.
+fn draw_in_columns(app: &App, entry: &Entry, cause: &Cause, pen: &mut Pen) {
+    let (theme, columns) = (app.theme(), Columns::of(app));
+    pen.right_column(&place(app, entry), 5, theme.dim());
+    let machine = owner(&entry.state).map_or("", name);
+    pen.column(machine, columns.machine, theme.dim()).put("  ", theme.dim());
+    let way = entry.text.strip_suffix(&*cause.trigger).unwrap_or(&entry.text).trim_end();
+    pen.column(way, columns.way, theme.normal()).put("  ", theme.normal());
+    pen.put(&cause.trigger, theme.normal());
+    if let Some(name) = &cause.name {
+        pen.put("  ", theme.dim()).put(name, theme.dim());
+    }
+}
+
+/// What the longest names need, within reason.
+struct Columns {
+    machine: u16,
+    way: u16,
+}
+
+impl Columns {
+    fn of(app: &App) -> Columns {
+        let only = app.reading().only.as_ref();
+        let machines = app.program().map_or(&[][..], |program| &program.machines).iter();
+        let machines = machines.filter(|machine| only.is_none_or(|only| within(&machine.path, only)));
+        let mut columns = Columns { machine: 0, way: 0 };
+        for machine in machines {
+            columns.machine = columns.machine.max(format::width(&machine.name)).min(16);
+            let names = machine.states.iter().filter_map(|&id| Some(format::width(&app.program()?[id].name)));
+            columns.way = columns.way.max(names.max().unwrap_or(0) * 2 + 3).min(32);
+        }
+        columns
     }
 }
 
@@ -225,12 +268,12 @@ fn title(app: &App) -> String {
 
 fn note(app: &App) -> String {
     let reading = app.reading();
-    let filter = reading.filter.label();
+    let filter = reading.label();
     if reading.place.is_none() {
-        return filter.into();
+        return filter;
     }
     let newer = app.view().journal.newest_first().take_while(|entry| entry.number >= reading.since);
-    let newer = newer.filter(|entry| reading.filter.shows(entry)).count();
+    let newer = newer.filter(|entry| reading.shows(entry)).count();
     let held = if newer > 0 { format!("held, {newer} newer: Esc") } else { "held: Esc".into() };
     if filter.is_empty() { held } else { format!("{filter}, {held}") }
 }

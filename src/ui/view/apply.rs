@@ -5,7 +5,8 @@ use serde_json::Value;
 use super::mode::is_own_doing;
 use super::problem::{Origin, Problem};
 use super::{Cause, Edit, Kind, Message, Mode, Path, TAKEN_KEPT, View, Which, World, name, owner};
-use crate::model::{TransitionId, Trigger};
+use crate::model::TransitionId;
+use crate::model::ways::guard_block;
 use crate::runtime::command::Command;
 use crate::runtime::record::{BridgeState, Fault, Forced, Health, Log, Record, Taken, What};
 use crate::ui::format;
@@ -24,6 +25,7 @@ impl View {
             What::Enter { state } => self.enter(state),
             What::Exit { state } => self.exit(state),
             What::Transition(taken) => self.take(taken),
+            What::Guards { state, ways } => _ = self.guards.insert(state.clone(), ways.clone()),
             What::Discard { machine } => self.discard(machine),
             What::Set { var, value, by } => self.set(var, value, by),
             What::Input { bridge, name, value } => self.input(bridge, name, value),
@@ -49,6 +51,7 @@ impl View {
             Command::OnEdit { mode } => self.choices.on_edit = *mode,
             Command::Saves { mode } => self.choices.saves = *mode,
             Command::OnError { mode } => self.choices.on_error = *mode,
+            Command::Explain { .. } => self.guards.clear(),
             Command::DropHeld => self.drop_held(),
             Command::PutAtStart { bridge } => {
                 self.journal.note(self.t, format!("{bridge} put at its start"));
@@ -102,7 +105,8 @@ impl View {
         let cause = self.transition(taken);
         let place = cause.and_then(|cause| self.place_of(cause));
         let evidence = cause.map_or_else(Vec::new, |cause| self.evidence_for(cause));
-        let cause = Cause { name: taken.name.clone(), transition: cause.map(|id| (self.loads, id)), evidence };
+        let transition = cause.map(|id| (self.loads, id));
+        let cause = Cause { trigger: taken.trigger.clone(), name: taken.name.clone(), transition, evidence };
         self.journal.add(t, Kind::Change(cause), text, state.into(), place);
     }
 
@@ -116,14 +120,10 @@ impl View {
 
     /// A transition's record comes before what its actions change.
     fn evidence_for(&self, transition: TransitionId) -> Vec<String> {
-        let Some(program) = &self.program else { return Vec::new() };
-        let transition = &program[transition];
-        let block = match transition.trigger {
-            Trigger::Event(event) => program[event].block,
-            Trigger::Block(block) => block,
-            _ => return Vec::new(),
-        };
-        self.evidence(program, transition.machine, &program[block].code)
+        match &self.program {
+            Some(program) if guard_block(program, transition).is_some() => self.evidence(program, transition),
+            _ => Vec::new(),
+        }
     }
 
     fn place_of(&self, transition: TransitionId) -> Option<(Path, usize)> {

@@ -1,7 +1,7 @@
 //! Where the program will pause, and who wants it.
 
 use super::View;
-use crate::model::diff::transition_key;
+use crate::model::diff::transition_name;
 use crate::model::{Program, TransitionId};
 use crate::runtime::command::BreakAt;
 use crate::runtime::record::Setter;
@@ -29,11 +29,5 @@ impl View {
 
 /// A transition as breakpoints and lists of changes name it: equal ones are told apart by their order.
 pub fn transition_text(program: &Program, id: TransitionId) -> String {
-    let key = transition_key(program, &program[id]);
-    let siblings = program[program[id].machine].transitions.iter();
-    let before = siblings.take_while(|&&other| other != id);
-    match before.filter(|&&other| transition_key(program, &program[other]) == key).count() {
-        0 => key,
-        equal => format!("{key} #{}", equal + 1),
-    }
+    transition_name(program, id).to_string()
 }

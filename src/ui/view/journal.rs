@@ -43,6 +43,8 @@ pub enum Kind {
 /// The transition that was taken.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Cause {
+    /// The event's name, `block`, `eps` or `ontime`.
+    pub trigger: Path,
     pub name: Option<Path>,
     /// In the program of this many loads.
     pub transition: Option<(u64, TransitionId)>,

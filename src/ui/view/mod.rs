@@ -33,7 +33,7 @@ pub use variable::Variable;
 pub use world::World;
 
 use crate::model::Program;
-use crate::runtime::record::{Breakpoint, Finding, Held, Taken};
+use crate::runtime::record::{Breakpoint, Finding, Held, Taken, Way};
 use crate::runtime::time::Time;
 use crate::ui::format::file_name;
 
@@ -66,6 +66,8 @@ pub struct View {
     pub bridges: BTreeMap<Path, Bridge>,
     /// The latest transitions, oldest first.
     pub taken: VecDeque<(Time, Taken)>,
+    /// What the guards of active states came to, in the order of `ways_out`; only while that is asked for.
+    pub guards: BTreeMap<Path, Vec<Way>>,
     pub journal: Journal,
     /// What is wrong, in the order found.
     pub problems: Vec<Problem>,
@@ -99,6 +101,7 @@ impl View {
             tuned: BTreeMap::new(),
             bridges: BTreeMap::new(),
             taken: VecDeque::new(),
+            guards: BTreeMap::new(),
             journal: Journal::default(),
             problems: Vec::new(),
             edit: None,

@@ -15,6 +15,7 @@ impl View {
         let edit = if self.loads == 0 { Edit::Loaded } else { Edit::of_load(load, self.edit.as_ref()) };
         self.loads += 1;
         self.held = None;
+        self.guards.clear();
         self.rename(&Renames::of(&load.changes));
         self.note_edit(&edit);
         self.edit = Some(edit);

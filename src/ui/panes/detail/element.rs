@@ -1,13 +1,12 @@
 //! A machine with its events; a state with its actions, its times and the ways out of it.
 
-use super::{Line, Page, Tone, place};
-use crate::model::diff::trigger_text;
-use crate::model::{BlockId, Entry, MachineId, Program, Sources, StateId, TransitionKind, Trigger};
+use super::{Page, Tone, place};
+use crate::model::{BlockId, Entry, MachineId, Program, StateId};
 use crate::runtime::record::Setter;
 use crate::ui::format;
 use crate::ui::panes::breakpoints::mark;
 use crate::ui::tree::{self, Element};
-use crate::ui::view::{name, transition_text};
+use crate::ui::view::name;
 
 impl Page<'_> {
     pub(super) fn element(&mut self) {
@@ -38,6 +37,10 @@ impl Page<'_> {
                 self.add(Tone::Text, format!("in {active} since {}", format::clock(running.entered)));
             }
         }
+        let active = self.app.view().active(&machine.path).and_then(|path| program.state(path));
+        if let Some(state) = active {
+            self.ways_out(program, state, &format!("why not, in {}", program[state].name));
+        }
         if !machine.events.is_empty() {
             self.add(Tone::Heading, "events");
         }
@@ -57,6 +60,8 @@ impl Page<'_> {
             Some(by @ Setter::Source) => self.add(Tone::Text, format!("{} pauses when entered, as written", mark(by))),
             None => (),
         }
+        let heading = if self.app.view().is_active(&state.path) { "why not" } else { "ways out" };
+        self.ways_out(program, id, heading);
         for entry in &state.onentry {
             match entry {
                 Entry::Action(block) => self.action(program, "onentry", *block),
@@ -68,35 +73,6 @@ impl Page<'_> {
         }
         state.running.iter().for_each(|&block| self.action(program, "running", block));
         state.onexit.iter().for_each(|&block| self.action(program, "onexit", block));
-        if !state.outgoing.is_empty() || !state.exits.is_empty() {
-            self.add(Tone::Heading, "ways out");
-        }
-        for &id in state.outgoing.iter().chain(&state.exits) {
-            let transition = &program[id];
-            let form = match (transition.kind, &transition.sources) {
-                (TransitionKind::On, Sources::Any) => "* on",
-                (TransitionKind::Ontime, Sources::Any) => "* ontime",
-                (TransitionKind::Eps, Sources::Any) => "* eps",
-                (TransitionKind::On, _) => "on",
-                (TransitionKind::Eps, _) => "eps",
-                (TransitionKind::Ontime, _) => "ontime",
-                (TransitionKind::Exit, _) => "exit",
-            };
-            let trigger = trigger_text(program, &transition.trigger);
-            let name = transition.name.as_ref().map_or(String::new(), |name| format!("  {name}"));
-            let cause = format!("{form} {trigger}");
-            let text = format!("{} → {}{name}", cause.trim_end(), transition.target_name);
-            let text = match self.app.view().breaks_at_transition(&transition_text(program, id)) {
-                Some(by) => format!("{} {text}", mark(by)),
-                None => text,
-            };
-            let place = place(program, transition.span);
-            self.lines.push(Line { text, place, transition: Some(id), tone: Tone::Text });
-            if let Trigger::Event(event) = transition.trigger {
-                let code = program[program[event].block].code.trim();
-                self.add(Tone::Aside, format!("  {code}"));
-            }
-        }
     }
 
     fn times(&mut self, program: &Program, id: StateId) {
