@@ -24,9 +24,12 @@ pub enum Spacing {
 }
 
 impl Spacing {
-    fn widened(self, width: usize) -> usize {
+    /// The width of boxes whose text takes so many columns. In the middle there is room for names to come.
+    fn box_width(self, text: usize) -> usize {
+        let width = FRAME + text;
         match self {
-            Spacing::Middle(_) | Spacing::Stepped => width.next_multiple_of(STEP),
+            Spacing::Middle(_) => width.next_multiple_of(2 * STEP).max(4 * STEP),
+            Spacing::Stepped => width.next_multiple_of(STEP),
             Spacing::Tight => width,
         }
     }
@@ -34,8 +37,9 @@ impl Spacing {
     /// The columns left of the boxes, where the lines there take `extent`.
     fn before(self, box_width: usize, extent: usize) -> usize {
         match self {
-            Spacing::Middle(width) => self.widened(extent).max(width.saturating_sub(box_width) / 2),
-            Spacing::Stepped | Spacing::Tight => self.widened(extent),
+            Spacing::Middle(width) => extent.next_multiple_of(STEP).max(width.saturating_sub(box_width) / 2),
+            Spacing::Stepped => extent.next_multiple_of(STEP),
+            Spacing::Tight => extent,
         }
     }
 }
@@ -60,7 +64,7 @@ impl Columns {
     pub fn new(stack: &Stack, texts: &Texts, limits: Limits, spacing: Spacing) -> Columns {
         let box_width = match stack.levels.len() {
             0 => 0,
-            _ => spacing.widened(FRAME + texts.widest(limits)),
+            _ => spacing.box_width(texts.widest(limits)),
         };
         let lanes = |side| Lanes::new(stack, texts, limits, side, box_width);
         let (mut left, right) = (lanes(Side::Left), lanes(Side::Right));
