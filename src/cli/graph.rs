@@ -67,7 +67,11 @@ fn by_last_name(program: &Program, name: &str) -> Option<MachineId> {
 fn text(program: &Program, machine: MachineId, args: &GraphArgs) -> String {
     let graph = machine_graph::graph(program, machine);
     let glyphs = if args.ascii { Glyphs::Ascii } else { Glyphs::Unicode };
-    let full = draw(&graph, &Options { glyphs, max_width: args.width, rows: Rows::Two });
-    let fits = args.height.is_none_or(|height| full.height <= height);
-    if fits { full.text() } else { draw(&graph, &Options { glyphs, max_width: args.width, rows: Rows::One }).text() }
+    let printed = |rows| {
+        let drawing = draw(&graph, &Options { glyphs, max_width: args.width, rows, ..Options::default() });
+        drawing.text() + &drawing.legend(args.width.unwrap_or(u16::MAX))
+    };
+    let full = printed(Rows::Two);
+    let fits = args.height.is_none_or(|height| full.lines().count() <= usize::from(height));
+    if fits { full } else { printed(Rows::One) }
 }

@@ -238,8 +238,12 @@ fn graphs_fit_where_they_are_asked_to() {
     let ascii = graph(&["--ascii"]);
     assert!(ascii.is_ascii() && ascii.contains("bumpback"));
     assert!(!graph(&[]).is_ascii());
-    let narrow = graph(&["--width", "30"]);
-    assert!(narrow.lines().all(|line| line.chars().count() <= 30), "{narrow}");
+    for width in [9, 22, 30] {
+        let narrow = graph(&["--width", &width.to_string()]);
+        assert!(narrow.lines().all(|line| line.chars().count() <= width), "{narrow}");
+        // Where a text is shortened, a legend has it whole.
+        assert!(width < 20 || narrow.contains("tlooking"), "{narrow}");
+    }
     assert!(graph(&["--height", "14"]).lines().count() <= graph(&[]).lines().count());
     assert!(graph(&["follower/looking/lookalgo"]).contains("lookleft"));
     assert!(graph(&["--format", "dot"]).starts_with("digraph"));

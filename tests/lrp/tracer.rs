@@ -1,10 +1,13 @@
 //! Reads a printed drawing of a state machine as a person would: finds the boxes and walks each line back from its
 //! arrow head. Knows nothing of how the drawing was made; it sees the text alone, and refuses what could be read in two ways.
 
+mod legend;
+mod list;
 mod page;
 
 use std::collections::BTreeMap;
 
+use legend::Legend;
 pub use page::columns;
 use page::{At, Column, Page};
 
@@ -17,15 +20,26 @@ pub struct Seen {
     pub edges: Vec<(String, String, String)>,
 }
 
+/// What a drawing with its legend says; an error if that is nothing, or could be two things.
 pub fn trace(text: &str) -> Result<Seen, String> {
-    let page = Page::new(text);
-    let Some(column) = Column::find(&page)? else {
+    let (lines, legend) = Legend::split(text)?;
+    let page = Page::new(&lines);
+    let seen = match (spine(&page), list::trace(&page)) {
+        (Ok(spine), Ok(list)) if spine != list => Err("a drawing and a list at once".to_owned()),
+        (Ok(seen), _) | (Err(_), Ok(seen)) => Ok(seen),
+        (Err(spine), Err(list)) => Err(format!("{spine}; read as a list: {list}")),
+    };
+    legend.applied(seen?)
+}
+
+fn spine(page: &Page) -> Result<Seen, String> {
+    let Some(column) = Column::find(page)? else {
         return match page.cells.iter().flatten().find(|cell| *cell != " ") {
             Some(cell) => Err(format!("{cell:?} without a box")),
             None => Ok(Seen { states: Vec::new(), edges: Vec::new() }),
         };
     };
-    let mut tracer = Tracer { page: &page, column: &column, owners: BTreeMap::new() };
+    let mut tracer = Tracer { page, column: &column, owners: BTreeMap::new() };
     let mut edges = tracer.edges()?;
     tracer.nothing_is_left()?;
     edges.sort();

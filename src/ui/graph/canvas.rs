@@ -17,6 +17,7 @@ pub fn paint(graph: &Graph, glyphs: Glyphs, layout: Layout) -> Drawing {
         clusters: BTreeMap::new(),
         boxes: layout.blocks.iter().map(|block| block.rect).collect(),
         rooms: layout.blocks.iter().map(|block| block.inside).collect(),
+        shortened: layout.shortened,
     };
     let mut canvas = Canvas { glyphs, drawing };
     for (node, block) in layout.blocks.iter().enumerate() {

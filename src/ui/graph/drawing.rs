@@ -5,7 +5,8 @@ use std::borrow::Cow;
 use std::collections::BTreeMap;
 
 use super::glyphs;
-use super::layout::{Point, Rect};
+use super::layout::{Point, Rect, Shortened};
+use super::words;
 
 /// What a cell belongs to. Numbers are indices into the nodes and edges of the graph.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,6 +51,7 @@ pub struct Drawing {
     pub(super) clusters: BTreeMap<usize, String>,
     pub(super) boxes: Vec<Rect>,
     pub(super) rooms: Vec<Option<Rect>>,
+    pub(super) shortened: Shortened,
 }
 
 impl Drawing {
@@ -141,6 +143,21 @@ impl Drawing {
         out
     }
 
+    /// What the shortened names and labels are in full, as lines of text of at most `width` columns where that can be;
+    /// nothing where all are whole. A line too long goes on below, further in.
+    pub fn legend(&self, width: u16) -> String {
+        let Shortened { names, labels } = &self.shortened;
+        let mut out = String::new();
+        for (title, texts) in [("states", names), ("labels", labels)] {
+            if !texts.is_empty() {
+                out.push_str(title);
+                out.push('\n');
+            }
+            texts.iter().for_each(|(shown, whole)| out.push_str(&entry(shown, whole, width.into())));
+        }
+        out
+    }
+
     pub(super) fn index(&self, x: u16, y: u16) -> Option<usize> {
         (x < self.width && y < self.height).then(|| usize::from(y) * usize::from(self.width) + usize::from(x))
     }
@@ -152,4 +169,16 @@ impl Drawing {
             (None, glyph) => Cow::Owned(glyph.to_string()),
         }
     }
+}
+
+/// `shown  whole`, broken where it is too long.
+fn entry(shown: &str, whole: &str, width: usize) -> String {
+    let text = format!("{shown}  {whole}");
+    let clusters: Vec<(&str, usize)> = words::clusters(&text).collect();
+    let rows = words::broken(&clusters, [2, 4].map(|indent| width.saturating_sub(indent)));
+    let indents = std::iter::once("  ").chain(std::iter::repeat("    "));
+    let line = |(row, indent): (std::ops::Range<usize>, &str)| {
+        clusters[row].iter().fold(indent.to_owned(), |line, (cluster, _)| line + cluster) + "\n"
+    };
+    rows.into_iter().zip(indents).map(line).collect()
 }

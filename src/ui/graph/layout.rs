@@ -62,4 +62,12 @@ pub struct Layout {
     pub blocks: Vec<Block>,
     /// One for each edge, `None` for an edge without ends.
     pub routes: Vec<Option<Route>>,
+    pub shortened: Shortened,
+}
+
+/// The texts that aren't whole in a drawing: what is shown, and of what. No two texts show the same.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Shortened {
+    pub names: Vec<(String, String)>,
+    pub labels: Vec<(String, String)>,
 }

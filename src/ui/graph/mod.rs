@@ -1,13 +1,14 @@
 //! Draws a state machine in the integer cells of a terminal. Knows nothing of the terminal's library, of programs or of records.
 //!
 //! A [`Graph`] goes through a layout (where the boxes stand, which way each edge runs) onto a canvas of cells. The layout
-//! knows no glyphs, the canvas no states; a second layout can stand beside the first and leave the canvas as it is.
+//! knows no glyphs, the canvas no states. Where a width is too small for lines, the same cells hold a list.
 
 mod canvas;
 mod drawing;
 mod export;
 mod glyphs;
 mod layout;
+mod list;
 mod spine;
 mod words;
 
@@ -63,10 +64,22 @@ pub enum EdgeKind {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct Options {
     pub glyphs: Glyphs,
-    /// In columns. To keep to it labels are shortened first, then names; no line is ever left out, so a drawing with
-    /// very many lines may still be wider.
+    /// In columns. To keep to it labels and names are shortened, in turns and so that each still differs from the others
+    /// ([`Drawing::legend`] has them whole); where that isn't enough, the drawing is a list of all states and edges. Only
+    /// below eight columns it may be wider.
     pub max_width: Option<u16>,
+    pub place: Place,
     pub rows: Rows,
+}
+
+/// Where in the given width the boxes stand.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
+pub enum Place {
+    /// As far left as the lines allow: for paper.
+    #[default]
+    Left,
+    /// In the middle, as long as the lines on both sides have room, so that edits leave them there: for a screen.
+    Middle,
 }
 
 /// What a box shows of a nested machine.
@@ -81,5 +94,8 @@ pub enum Rows {
 
 /// The drawing of `graph`: the same for the same input, whatever is active.
 pub fn draw(graph: &Graph, options: &Options) -> Drawing {
-    canvas::paint(graph, options.glyphs, spine::layout(graph, options))
+    match spine::layout(graph, options) {
+        Some(layout) => canvas::paint(graph, options.glyphs, layout),
+        None => list::draw(graph, options.glyphs, options.max_width.map_or(usize::MAX, usize::from)),
+    }
 }

@@ -1,7 +1,7 @@
 //! A machine's drawing for a place of a certain size, and which of the program's elements each part of the drawing is.
 
 use crate::model::{MachineId, Program, StateId, TransitionId};
-use crate::ui::graph::{self, Drawing, EdgeKind, Options, Rows};
+use crate::ui::graph::{self, Drawing, EdgeKind, Options, Place, Rows};
 use crate::ui::machine_graph;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -25,7 +25,7 @@ impl Diagram {
     /// As wide as the room, as far as that can be; with a row for what is active inside where that fits the height.
     pub fn new(program: &Program, machine: MachineId, width: u16, height: u16) -> Diagram {
         let graph = machine_graph::graph(program, machine);
-        let options = |rows| Options { max_width: Some(width), rows, ..Options::default() };
+        let options = |rows| Options { max_width: Some(width), place: Place::Middle, rows, ..Options::default() };
         let two = graph::draw(&graph, &options(Rows::Two));
         let drawing = if two.height > height { graph::draw(&graph, &options(Rows::One)) } else { two };
         let states = &program[machine].states;

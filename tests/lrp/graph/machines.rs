@@ -111,3 +111,37 @@ pub fn fixed_cases() -> [(&'static str, Graph); 6] {
         ("loops", loops()),
     ]
 }
+
+/// Machines as large programs have them: one edge to the next state, of the others most to one nearby and some far. The
+/// last is as dense as none should be.
+pub fn large_cases() -> [(&'static str, Graph); 5] {
+    [
+        ("20 states", large(20, 2)),
+        ("30 states", large(30, 2)),
+        ("50 states", large(50, 2)),
+        ("100 states", large(100, 2)),
+        ("100 states, dense", large(100, 4)),
+    ]
+}
+
+fn large(states: usize, edges_each: usize) -> Graph {
+    let mut seed = states as u64;
+    let mut any = |below: usize| {
+        seed = seed.wrapping_mul(6364136223846793005).wrapping_add(1442695040888963407);
+        (seed >> 33) as usize % below
+    };
+    let mut edges = Vec::new();
+    for from in 0..states {
+        for nth in 0..edges_each {
+            let to = match (nth, any(4)) {
+                (0, _) => from + 1,
+                (_, 0) => any(states),
+                _ => from + any(9) + states - 4,
+            };
+            let label = ["start", "outofline", "500ms", "eps", "bumping"][any(5)];
+            edges.push(format!("state{from}->state{} {label}", to % states));
+        }
+    }
+    let names: Vec<String> = (0..states).map(|i| format!("state{i}")).collect();
+    graph(&names.join(" "), &edges.iter().map(String::as_str).collect::<Vec<_>>())
+}

@@ -1,35 +1,42 @@
 //! Drawings of random machines, and of random texts.
 
-use lrp::ui::graph::{Edge, EdgeKind, Glyphs, Graph, Node, NodeKind, Options, Rows, draw};
+use lrp::ui::graph::{Edge, EdgeKind, Glyphs, Graph, Node, NodeKind, Options, draw};
 use proptest::prelude::*;
 
-use super::{ASCII, ONE_ROW, UNICODE, meant, narrowed, shortens};
+use super::{ASCII, MIDDLE, NARROWEST, ONE_ROW, UNICODE, meant, printed};
 use crate::tracer::{columns, trace};
 
 /// A graph of up to `most` states, the last of them perhaps `*`, with up to four times as many edges of all kinds.
 fn any_graph(most: usize) -> impl Strategy<Value = Graph> {
     (2..=most, any::<bool>()).prop_flat_map(|(count, wildcard)| {
         let nodes = prop::collection::vec((any_name(), prop::option::weighted(0.2, any_name())), count);
-        let edge = (0..count, 0..count, any_label(), 0..4usize);
-        (nodes, prop::collection::vec(edge, 0..=4 * count))
-            .prop_map(move |(nodes, edges)| built(nodes, edges, wildcard))
+        let sources = prop_oneof![4 => prop::collection::vec(0..count, 1), 1 => prop::collection::vec(0..count, 2..5)];
+        let transition = (sources, 0..count, any_label(), 0..4usize);
+        (nodes, prop::collection::vec(transition, 0..=4 * count))
+            .prop_map(move |(nodes, transitions)| built(nodes, transitions, wildcard))
     })
 }
 
-fn built(nodes: Vec<(String, Option<String>)>, edges: Vec<(usize, usize, String, usize)>, wildcard: bool) -> Graph {
-    let last = nodes.len() - 1;
+/// Sources, target, label and kind.
+type Transition = (Vec<usize>, usize, String, usize);
+
+/// A transition out of several states has an edge from each; no more edges are made than there may be.
+fn built(nodes: Vec<(String, Option<String>)>, transitions: Vec<Transition>, wildcard: bool) -> Graph {
+    let (last, most) = (nodes.len() - 1, 4 * nodes.len());
     let is_any = |i: usize| wildcard && i == last;
     let node = |(i, (name, inside))| match is_any(i) {
         true => Node { name: "*".to_owned(), kind: NodeKind::Any, inside: None },
         false => Node { name: format!("{name}{i}"), kind: NodeKind::State, inside },
     };
-    let edge = |(id, (from, to, label, kind)): (usize, (usize, usize, String, usize))| {
+    let edges = transitions.into_iter().enumerate().flat_map(|(id, (from, to, label, kind))| {
         let kind = [EdgeKind::On, EdgeKind::Eps, EdgeKind::Ontime, EdgeKind::Exit][kind];
-        let kind = if is_any(from) { EdgeKind::Wildcard } else { kind };
-        Edge { from, to, label, kind, id: id as u32 }
-    };
-    let edges = edges.into_iter().enumerate().map(edge).filter(|edge| !is_any(edge.to));
-    Graph { edges: edges.collect(), nodes: nodes.into_iter().enumerate().map(node).collect() }
+        from.into_iter().map(move |from| {
+            let kind = if is_any(from) { EdgeKind::Wildcard } else { kind };
+            Edge { from, to, label: label.clone(), kind, id: id as u32 }
+        })
+    });
+    let edges = edges.filter(|edge| !is_any(edge.to)).take(most).collect();
+    Graph { edges, nodes: nodes.into_iter().enumerate().map(node).collect() }
 }
 
 /// Letters of all widths, an accent that combines with the letter before it, and signs that lines are made of.
@@ -51,6 +58,14 @@ fn read_back(graph: &Graph) -> Result<(), TestCaseError> {
     Ok(())
 }
 
+fn read_back_within(graph: &Graph, width: u16) -> Result<(), TestCaseError> {
+    for options in [UNICODE, ASCII, MIDDLE] {
+        let text = printed(graph, width, &options).map_err(TestCaseError::fail)?;
+        prop_assert_eq!(trace(&text), Ok(meant(graph)), "{:?} in {}\n{}", options, width, text);
+    }
+    Ok(())
+}
+
 proptest! {
     #![proptest_config(ProptestConfig { cases: 200, ..ProptestConfig::default() })]
 
@@ -58,28 +73,24 @@ proptest! {
     fn machines_are_read_as_they_are(graph in any_graph(40)) {
         read_back(&graph)?;
     }
+
+    #[test]
+    fn narrow_machines_are_read_as_they_are(graph in any_graph(12), width in NARROWEST..100) {
+        read_back_within(&graph, width)?;
+    }
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 10, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 20, ..ProptestConfig::default() })]
 
     #[test]
-    fn large_machines_are_read_as_they_are(graph in any_graph(100)) {
+    fn large_machines_are_read_as_they_are(graph in any_graph(100), width in NARROWEST..300) {
         read_back(&graph)?;
+        read_back_within(&graph, width)?;
     }
 }
 
 proptest! {
-    #[test]
-    fn narrow_drawings_keep_every_edge(graph in any_graph(20), width in 20..160u16) {
-        for options in [UNICODE, ASCII] {
-            if let Some(seen) = narrowed(&graph, width, &options) {
-                let seen = seen.map_err(TestCaseError::fail)?;
-                prop_assert!(shortens(&seen, &meant(&graph)), "{:#?}", seen);
-            }
-        }
-    }
-
     /// Whatever the texts are, nothing in the drawing moves the cursor or runs over its right end.
     #[test]
     fn any_text_can_be_drawn(
@@ -97,7 +108,7 @@ proptest! {
             edges: ends.iter().enumerate().map(edge).collect(),
         };
         for glyphs in [Glyphs::Unicode, Glyphs::Ascii] {
-            let drawing = draw(&graph, &Options { glyphs, max_width: width, rows: Rows::Two });
+            let drawing = draw(&graph, &Options { glyphs, max_width: width, ..UNICODE });
             prop_assert_eq!(drawing.text().lines().count(), usize::from(drawing.height));
             for line in drawing.text().lines() {
                 prop_assert!(!line.contains(char::is_control), "{:?}", line);

@@ -50,9 +50,9 @@ const ASCII: Script = Script {
 pub type At = (usize, usize);
 
 impl Page {
-    pub fn new(text: &str) -> Page {
-        let script = if text.contains('▌') { UNICODE } else { ASCII };
-        let cells = text.lines().map(|line| {
+    pub fn new(lines: &[&str]) -> Page {
+        let script = if lines.iter().any(|line| line.contains('▌')) { UNICODE } else { ASCII };
+        let cells = lines.iter().map(|line| {
             let clusters = line.graphemes(true);
             clusters
                 .flat_map(|c| [c].into_iter().chain(std::iter::repeat_n("", c.width().max(1) - 1)).map(str::to_owned))

@@ -1,5 +1,5 @@
-//! The columns of a spine: how wide its boxes are and which lane each edge has, within a given width. Knows nothing of
-//! what stands in the boxes' rows.
+//! The columns of a spine: how wide its boxes are and which lane each edge has, for texts of given widths. Knows nothing
+//! of what stands in the boxes' rows.
 
 use super::lanes::{self, Track};
 use super::stack::Stack;
@@ -11,8 +11,40 @@ const CLEARANCE: usize = 2;
 /// Columns of a box beside its text, half of them on either side.
 pub const FRAME: usize = 4;
 
+/// Widths go in steps of this where there is room, so that most edits leave the boxes where they are.
+const STEP: usize = 4;
+
+/// How wide the boxes and what is left of them are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Spacing {
+    /// Boxes in the middle of so many columns.
+    Middle(usize),
+    Stepped,
+    Tight,
+}
+
+impl Spacing {
+    /// The width of boxes whose text takes so many columns. In the middle there is room for names to come.
+    fn box_width(self, text: usize) -> usize {
+        let width = FRAME + text;
+        match self {
+            Spacing::Middle(_) => width.next_multiple_of(2 * STEP).max(4 * STEP),
+            Spacing::Stepped => width.next_multiple_of(STEP),
+            Spacing::Tight => width,
+        }
+    }
+
+    /// The columns left of the boxes, where the lines there take `extent`.
+    fn before(self, box_width: usize, extent: usize) -> usize {
+        match self {
+            Spacing::Middle(width) => extent.next_multiple_of(STEP).max(width.saturating_sub(box_width) / 2),
+            Spacing::Stepped => extent.next_multiple_of(STEP),
+            Spacing::Tight => extent,
+        }
+    }
+}
+
 pub struct Columns {
-    pub limits: Limits,
     /// Of each box, borders included.
     pub box_width: usize,
     pub left: Lanes,
@@ -29,30 +61,15 @@ pub struct Lanes {
 }
 
 impl Columns {
-    /// With the longest texts that keep to `max`, or with the shortest if none do.
-    pub fn fit(stack: &Stack, texts: &Texts, max: Option<usize>) -> Columns {
-        let full = texts.full();
-        let wide = Columns::new(stack, texts, full);
-        let Some(max) = max.filter(|max| *max < wide.width()) else {
-            return wide;
-        };
-        let fits = |limits| Columns::new(stack, texts, limits).width() <= max;
-        let by_label = |label| Limits { label, ..full };
-        let by_name = |name| Limits { name, label: 1 };
-        let limits = match longest(full.label, |label| fits(by_label(label))) {
-            Some(label) => by_label(label),
-            None => by_name(longest(full.name, |name| fits(by_name(name))).unwrap_or(1)),
-        };
-        Columns::new(stack, texts, limits)
-    }
-
-    fn new(stack: &Stack, texts: &Texts, limits: Limits) -> Columns {
+    pub fn new(stack: &Stack, texts: &Texts, limits: Limits, spacing: Spacing) -> Columns {
         let box_width = match stack.levels.len() {
             0 => 0,
-            _ => FRAME + texts.widest(limits),
+            _ => spacing.box_width(texts.widest(limits)),
         };
         let lanes = |side| Lanes::new(stack, texts, limits, side, box_width);
-        Columns { limits, box_width, left: lanes(Side::Left), right: lanes(Side::Right) }
+        let (mut left, right) = (lanes(Side::Left), lanes(Side::Right));
+        left.extent = spacing.before(box_width, left.extent);
+        Columns { box_width, left, right }
     }
 
     pub fn width(&self) -> usize {
@@ -66,8 +83,17 @@ impl Columns {
         }
     }
 
-    /// The columns free for the label of an arrow in a gap: up to the first lane there, or the end of the drawing.
-    pub fn room_in_gap(&self, side: Side, row: usize) -> usize {
+    /// The columns free for the label of an edge.
+    pub fn room(&self, run: Run, texts: &Texts) -> usize {
+        match run {
+            Run::Gap { side, row } => self.room_in_gap(side, row),
+            Run::Beside { side, from, .. } => self.room_in_line(side, from, texts.glyphs.label_padding()),
+            Run::Nowhere => usize::MAX,
+        }
+    }
+
+    /// In a gap: up to the first lane there, or the end of the drawing.
+    fn room_in_gap(&self, side: Side, row: usize) -> usize {
         let lanes = self.on(side);
         let end = match lanes.first_in(row) {
             Some(lane) => lane.saturating_sub(1 + CLEARANCE),
@@ -76,8 +102,8 @@ impl Columns {
         end + before_border(side, self.box_width)
     }
 
-    /// The columns free for the label of an edge that leaves its box in `row`, with a piece of line on both sides.
-    pub fn room_in_line(&self, side: Side, row: usize, padding: usize) -> usize {
+    /// Beside a box where the edge leaves it in `row`, with a piece of line on both sides.
+    fn room_in_line(&self, side: Side, row: usize, padding: usize) -> usize {
         let lane = self.on(side).first_in(row).unwrap_or(0);
         lane.saturating_sub(3 + 2 * padding)
     }
@@ -95,7 +121,8 @@ impl Lanes {
                 }
                 Run::Beside { from, to, .. } if run.side() == Some(side) => {
                     edges.push(edge);
-                    tracks.push(Track::between(from, to));
+                    let end = |row| (row, stack.box_at(row));
+                    tracks.push(Track::between(end(from), end(to)));
                     reach[from] = reach_in_line(label, texts.glyphs.label_padding());
                     reach[to] = 2;
                 }
@@ -145,18 +172,4 @@ fn before_border(side: Side, box_width: usize) -> usize {
         Side::Right => box_width.saturating_sub(box_width / 2 + 1),
     };
     beside_middle.saturating_sub(2)
-}
-
-/// The longest length from 1 to `longest` whose drawing fits, if any does; a shorter one never fits worse.
-fn longest(longest: usize, fits: impl Fn(usize) -> bool) -> Option<usize> {
-    let (mut low, mut high) = (0, longest);
-    while low < high {
-        let middle = (low + high).div_ceil(2);
-        if fits(middle) {
-            low = middle;
-        } else {
-            high = middle - 1;
-        }
-    }
-    (low > 0).then_some(low)
 }

@@ -6,15 +6,25 @@ pub struct Track {
     /// Its first and last row, both included.
     pub top: usize,
     pub bottom: usize,
+    /// The boxes, from the top, at which it begins and ends.
+    boxes: (usize, usize),
 }
 
 impl Track {
-    pub fn between(a: usize, b: usize) -> Track {
-        Track { top: a.min(b), bottom: a.max(b) }
+    /// Between two rows, each with the box that it belongs to.
+    pub fn between(a: (usize, usize), b: (usize, usize)) -> Track {
+        let ((top, first), (bottom, last)) = (a.min(b), a.max(b));
+        Track { top, bottom, boxes: (first, last) }
     }
 
     pub fn covers(self, row: usize) -> bool {
         self.top <= row && row <= self.bottom
+    }
+
+    /// What a track encloses comes before it. Rows that come and go change little in this order.
+    fn order(self) -> (usize, usize, usize) {
+        let (first, last) = self.boxes;
+        (last - first, first, self.bottom - self.top)
     }
 }
 
@@ -24,7 +34,7 @@ impl Track {
 /// Short tracks choose first, so whatever one track encloses lies inside it, and two tracks cross at most once.
 pub fn assign(tracks: &[Track], reach: &[usize]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..tracks.len()).collect();
-    order.sort_by_key(|&i| (tracks[i].bottom - tracks[i].top, i));
+    order.sort_by_key(|&i| (tracks[i].order(), i));
     let mut taken: Vec<Vec<Track>> = Vec::new();
     let mut lanes = vec![0; tracks.len()];
     for i in order {

@@ -6,23 +6,25 @@
 
 mod columns;
 mod ends;
+mod fit;
 mod lanes;
 mod stack;
 mod texts;
 
 use self::columns::{Columns, FRAME};
+use self::fit::{Fitted, fit};
 use self::stack::Stack;
 use self::texts::Texts;
 use super::glyphs::Way;
-use super::layout::{Block, Layout, Point, Route, Words, cell, point, rect};
+use super::layout::{Block, Layout, Point, Route, Shortened, Words, cell, point, rect};
 use super::{Graph, Options, words};
 
-pub fn layout(graph: &Graph, options: &Options) -> Layout {
+/// `None` if no spine of these states and edges is as narrow as asked for.
+pub fn layout(graph: &Graph, options: &Options) -> Option<Layout> {
     let texts = Texts::of(graph, options);
     let stack = Stack::new(graph, &texts);
-    let columns = Columns::fit(&stack, &texts, options.max_width.map(usize::from));
-    let spine = Spine { texts, stack, columns };
-    spine.layout()
+    let Fitted { columns, names, labels } = fit(&stack, &texts, options)?;
+    Some(Spine { texts, stack, columns, names, labels }.layout())
 }
 
 /// A side of the boxes: the right one for edges that lead down, the left one for those that lead up.
@@ -57,6 +59,9 @@ struct Spine {
     texts: Texts,
     stack: Stack,
     columns: Columns,
+    /// What is shown of each name and label.
+    names: Vec<String>,
+    labels: Vec<String>,
 }
 
 impl Spine {
@@ -68,13 +73,17 @@ impl Spine {
             height: cell(self.stack.height),
             blocks: nodes.map(|node| self.block(node)).collect(),
             routes: edges.map(|edge| self.route(edge)).collect(),
+            shortened: Shortened {
+                names: shortened(&self.names, self.texts.names()),
+                labels: shortened(&self.labels, self.texts.labels()),
+            },
         }
     }
 
     fn block(&self, node: usize) -> Block {
         let (x, width) = (self.columns.left.extent, self.columns.box_width);
         let level = self.stack.levels[node];
-        let text = self.texts.name(node, self.columns.limits);
+        let text = self.names[node].clone();
         let (name_width, mark) = (words::width(&text), self.texts.mark(node));
         let name_x = x + (width - name_width - mark) / 2;
         let room = rect(x + FRAME / 2, level.name + 1, width - FRAME, 1);
@@ -97,12 +106,11 @@ impl Spine {
     /// An arrow right of the boxes' middle if it leads down, left of it if it leads up, so that both fit into a gap.
     fn through_gap(&self, edge: usize, side: Side, row: usize) -> Route {
         let middle = self.columns.left.extent + self.columns.box_width / 2;
-        let room = self.columns.room_in_gap(side, row);
         let (x, head) = match side {
             Side::Left => (middle - 1, Way::Up),
             Side::Right => (middle + 1, Way::Down),
         };
-        let label = self.texts.label(edge, room).map(|text| Words {
+        let label = self.label(edge).map(|text| Words {
             at: match side {
                 Side::Left => point(x - 1 - words::width(&text), row),
                 Side::Right => point(x + 2, row),
@@ -117,8 +125,7 @@ impl Spine {
         let at = |distance, row| self.at(side, distance, row);
         let lane = self.columns.on(side).of(edge).unwrap_or(1);
         let padding = self.texts.glyphs.label_padding();
-        let room = self.columns.room_in_line(side, from, padding);
-        let label = self.texts.label(edge, room).map(|text| Words {
+        let label = self.label(edge).map(|text| Words {
             at: match side {
                 Side::Left => at(1 + padding + words::width(&text), from),
                 Side::Right => at(2 + padding, from),
@@ -135,6 +142,10 @@ impl Spine {
         }
     }
 
+    fn label(&self, edge: usize) -> Option<String> {
+        Some(self.labels[edge].clone()).filter(|label| !label.is_empty())
+    }
+
     /// The cell in `row` at a distance from the border of the boxes.
     fn at(&self, side: Side, distance: usize, row: usize) -> Point {
         let left = self.columns.left.extent;
@@ -143,4 +154,15 @@ impl Spine {
             Side::Right => point(left + self.columns.box_width - 1 + distance, row),
         }
     }
+}
+
+/// What is shown of each text that isn't whole, with the text.
+fn shortened(shown: &[String], whole: &[String]) -> Vec<(String, String)> {
+    let mut pairs: Vec<(String, String)> = Vec::new();
+    for (shown, whole) in shown.iter().zip(whole) {
+        if shown != whole && pairs.iter().all(|(known, _)| known != shown) {
+            pairs.push((shown.clone(), whole.clone()));
+        }
+    }
+    pairs
 }

@@ -50,6 +50,11 @@ impl Stack {
         let runs = runs(graph, &levels, &ends);
         Stack { levels, runs, height }
     }
+
+    /// The index of the box in this row, or of the next one above.
+    pub fn box_at(&self, row: usize) -> usize {
+        self.levels.partition_point(|level| level.top <= row).saturating_sub(1)
+    }
 }
 
 fn runs(graph: &Graph, levels: &[Level], ends: &Ends) -> Vec<Run> {

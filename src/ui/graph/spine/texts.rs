@@ -75,14 +75,13 @@ impl Texts {
         words::width(&self.labels[edge]).min(limits.label)
     }
 
-    pub fn name(&self, node: usize, limits: Limits) -> String {
-        words::shorten(&self.names[node], limits.name, self.glyphs)
+    pub fn names(&self) -> &[String] {
+        &self.names
     }
 
-    /// The label in at most `room` columns; `None` if nothing of it can be shown.
-    pub fn label(&self, edge: usize, room: usize) -> Option<String> {
-        let text = words::shorten(&self.labels[edge], room, self.glyphs);
-        (!text.is_empty()).then_some(text)
+    /// One for each edge.
+    pub fn labels(&self) -> &[String] {
+        &self.labels
     }
 
     /// The columns that the mark of a nested machine takes beside the name.
