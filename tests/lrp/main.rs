@@ -39,6 +39,8 @@ mod story;
 mod syntax;
 mod terminal;
 mod tracer;
+mod tuning;
 mod view;
 mod walk;
 mod watch;
+mod write_back;

@@ -56,6 +56,7 @@ fn draw_typing(app: &App, typing: &Typing, message: Option<&str>, mut pen: Pen, 
     let theme = app.theme();
     let (before, sign) = match &typing.goal {
         Goal::Value(var) => (var.to_string(), " = "),
+        Goal::Filter => ("variables called".into(), " "),
         Goal::Condition(machine) if machine.is_empty() => ("pause when".into(), " "),
         Goal::Condition(machine) => (format!("{}: pause when", name(machine)), " "),
     };
@@ -66,7 +67,9 @@ fn draw_typing(app: &App, typing: &Typing, message: Option<&str>, mut pen: Pen, 
             pen.put_right(&message, theme.stop()).put_right("  ", theme.normal());
         }
         None if pen.room() >= 58 => {
-            pen.put_right("Enter sets  Esc leaves", theme.dim()).put_right("  ", theme.dim());
+            let hint =
+                if typing.goal == Goal::Filter { "Enter keeps  Esc shows all" } else { "Enter sets  Esc leaves" };
+            pen.put_right(hint, theme.dim()).put_right("  ", theme.dim());
         }
         None => (),
     }

@@ -50,6 +50,7 @@ impl View {
             Command::Saves { mode } => self.choices.saves = *mode,
             Command::OnError { mode } => self.choices.on_error = *mode,
             Command::DropHeld => self.drop_held(),
+            Command::Reset { var } => self.reset(var),
             Command::PutAtStart { bridge } => {
                 self.journal.note(self.t, format!("{bridge} put at its start"));
                 if let Some(world) = self.world.as_mut().filter(|world| *world.bridge == **bridge) {
