@@ -38,6 +38,10 @@ pub enum Command {
         var: String,
         value: String,
     },
+    /// Gives a variable its initial value again, worked out anew.
+    Reset {
+        var: String,
+    },
     /// From scratch: variables initialised, spawns done anew.
     Restart,
     /// What an edit does from now on where it changes what is active.

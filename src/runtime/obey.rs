@@ -60,6 +60,7 @@ impl Engine {
             Command::TransitionTo { state } => self.force(self.state_called(&state)?, Forced::Transition),
             Command::JumpTo { state } => self.force(self.state_called(&state)?, Forced::Jump),
             Command::Set { var, value } => self.set(&var, &value)?,
+            Command::Reset { var } => self.reset(&var)?,
             Command::Break { at, mode } => self.set_breakpoint(&at, mode)?,
             Command::Step | Command::Rate { .. } | Command::PutAtStart { .. } | Command::FileChanged { .. } => {}
         }
@@ -124,18 +125,29 @@ impl Engine {
         self.program.state(path).ok_or_else(|| refuse("state", path, known))
     }
 
-    fn set(&mut self, path: &str, value: &str) -> Result<(), Refused> {
-        let program = Arc::clone(&self.program);
+    /// A variable that has a value.
+    fn var_called(&self, path: &str) -> Result<VarId, Refused> {
+        let program = &self.program;
         let known = program.vars.iter().map(|var| &*var.path);
         let var = program.var(path).ok_or_else(|| refuse("variable", path, known))?;
-        let machine = program[var].machine;
-        if let Some(machine) = machine.filter(|_| !self.is_alive(var)) {
-            return Err(Refused(format!(
-                "`{path}` has no value now: machine `{}` is not running",
-                program[machine].path
-            )));
+        match program[var].machine.filter(|_| !self.is_alive(var)) {
+            Some(machine) => {
+                Err(Refused(format!("`{path}` has no value now: machine `{}` is not running", program[machine].path)))
+            }
+            None => Ok(var),
         }
-        let in_scope = Names::of(&program).vars_in_scope(machine);
+    }
+
+    fn reset(&mut self, path: &str) -> Result<(), Refused> {
+        let var = self.var_called(path)?;
+        self.initialise_anew(var);
+        Ok(())
+    }
+
+    fn set(&mut self, path: &str, value: &str) -> Result<(), Refused> {
+        let var = self.var_called(path)?;
+        let program = Arc::clone(&self.program);
+        let in_scope = Names::of(&program).vars_in_scope(program[var].machine);
         let scope: Vec<(&str, Cell)> =
             in_scope.iter().map(|&var| (&*program[var].name, self.store.cell(var))).collect();
         let block =

@@ -18,3 +18,4 @@ pub mod test_runner;
 pub mod trace;
 pub mod warden;
 pub mod watch;
+pub mod write_back;

@@ -21,6 +21,11 @@ pub enum Action {
     Decrease,
     IncreaseMuch,
     DecreaseMuch,
+    WriteBack,
+    WriteAll,
+    Reset,
+    Pin,
+    Search,
     Into,
     OutOf,
     Fold,
@@ -137,10 +142,15 @@ table! {
     Action::SwitchOnError, "on-error", ["P"], "", "pause when something goes wrong, or go on", Breaks, Reach::Screen;
 
     Action::EditValue, "edit-value", ["e", "Enter"], "edit", "type a value: any Lua expression", Values, VALUES;
-    Action::Increase, "increase", ["Right", "l", ">"], "more", "a little more; a boolean changes over", Values, VALUES;
-    Action::Decrease, "decrease", ["Left", "h", "<"], "less", "a little less; a boolean changes over", Values, VALUES;
+    Action::Increase, "increase", ["Right", "l", ">"], "more", "a little more; tables open, booleans turn", Values, VALUES;
+    Action::Decrease, "decrease", ["Left", "h", "<"], "less", "a little less; tables close, booleans turn", Values, VALUES;
     Action::IncreaseMuch, "increase-much", ["Shift-Right", "L"], "", "much more", Values, VALUES;
     Action::DecreaseMuch, "decrease-much", ["Shift-Left", "H"], "", "much less", Values, VALUES;
+    Action::WriteBack, "write-back", ["w"], "write back", "into the file as its initial value", Values, VALUES;
+    Action::WriteAll, "write-all", ["W"], "", "all values marked * into their files", Values, Reach::Screen;
+    Action::Reset, "reset", ["r"], "reset", "the initial value again", Values, VALUES;
+    Action::Pin, "pin", ["p"], "pin", "keep it on top, or no more", Values, VALUES;
+    Action::Search, "search", ["/"], "find", "only what is called so; Esc shows all", Values, VALUES;
 
     Action::Up, "up", ["Up", "k"], "", "the row above", Moving, Reach::Screen;
     Action::Down, "down", ["Down", "j"], "", "the row below", Moving, Reach::Screen;
@@ -196,7 +206,7 @@ impl Group {
             Group::Program => "The program",
             Group::Edits => "Edits",
             Group::Breaks => "Breakpoints (a transition: in the log or the detail)",
-            Group::Values => "Values (in the variables)",
+            Group::Values => "Values (in the variables; *: only set by hand)",
             Group::Moving => "Moving about",
             Group::Looking => "What is on the screen",
             Group::Lrp => "lrp",
@@ -244,6 +254,8 @@ pub fn of_key_always(key: Key) -> Option<Action> {
 pub fn offered(pane: Pane) -> impl Iterator<Item = &'static Entry> {
     let mut shown: Vec<&Entry> = TABLE.iter().filter(|entry| !entry.label.is_empty() && entry.works_in(pane)).collect();
     shown.retain(|entry| !matches!(entry.action, Action::Runstop | Action::Help));
+    // What the pane has another use for isn't offered under that key.
+    shown.retain(|entry| entry.keys.first().and_then(|key| of_key(key.parse().ok()?, pane)) == Some(entry.action));
     shown.sort_by_key(|entry| match (entry.action, entry.reach) {
         (Action::Pause, _) => 0,
         (Action::ApplyHeld | Action::DropHeld | Action::HeldEdit | Action::GiveBack, _) => 1,

@@ -12,9 +12,10 @@ mod reading;
 mod saves;
 mod typing;
 mod values;
+mod writing;
 
 use std::cell::RefCell;
-use std::collections::BTreeSet;
+use std::collections::{BTreeMap, BTreeSet};
 use std::rc::Rc;
 use std::sync::Arc;
 
@@ -24,6 +25,7 @@ use ratatui::layout::Size;
 pub use movement::top_for;
 pub use reading::{Filter, LogRow, Reading, Shown};
 pub use typing::{Goal, Text, Typing};
+pub use writing::WriteBack;
 
 use self::follow::Follow;
 use self::moment::Moment;
@@ -31,6 +33,7 @@ use super::action;
 use super::key::Key;
 use super::layout::{Extent, Figure, Pane};
 use super::panes::diagram::Diagram;
+use super::scope::Arrangement;
 use super::theme::Theme;
 use super::tree;
 use super::view::{Choices, Path, ProblemKey, Renames, View};
@@ -67,6 +70,8 @@ pub enum Effect {
         line: usize,
         column: usize,
     },
+    /// Files to be written; what became of it is told by `App::written`.
+    WriteBack(Vec<WriteBack>),
     /// After the robot was stopped.
     Quit,
     /// After the robot was stopped.
@@ -89,6 +94,12 @@ pub struct App {
     folded: BTreeSet<Path>,
     /// The variable or field a person is at.
     value: Option<Path>,
+    /// How the variables are listed.
+    arrangement: Arrangement,
+    /// Values that files have, though the program that runs doesn't come from them yet.
+    written: BTreeMap<Path, serde_json::Value>,
+    /// What of the last writing can't be written, and why.
+    refused: String,
     reading: Reading,
     follow: Follow,
     overlay: Overlay,
@@ -155,6 +166,9 @@ impl App {
             provisional: true,
             folded: BTreeSet::new(),
             value: None,
+            arrangement: Arrangement::default(),
+            written: BTreeMap::new(),
+            refused: String::new(),
             reading: Reading::default(),
             follow: Follow::default(),
             overlay: Overlay::Nothing,
@@ -248,6 +262,7 @@ impl App {
         self.folded = self.folded.iter().map(|path| renames.place(path)).collect();
         self.value = self.value.as_ref().map(|path| renames.variable(path));
         self.reading.only = self.reading.only.as_ref().map(|path| renames.place(path));
+        self.arrangement.rename(renames);
         if let Some((path, _)) = &mut self.nudged {
             *path = renames.variable(path);
         }

@@ -1,6 +1,6 @@
 //! Numbers, times and values in the few columns there are. Knows nothing of where they are shown.
 
-use serde_json::Value;
+use serde_json::{Map, Value};
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
 use super::view::Timeout;
@@ -223,14 +223,29 @@ pub fn message(message: &Value) -> String {
 fn collect<'a>(path: &str, item: &'a Value, found: &mut Vec<(String, &'a Value)>) {
     match item {
         Value::Object(fields) if marker(item).is_none() => {
-            let mut fields: Vec<_> = fields.iter().collect();
-            fields.sort_by_key(|(field, _)| rank(field));
-            for (field, item) in fields {
+            for (field, item) in in_order(fields) {
                 let path = if path.is_empty() { field.clone() } else { format!("{path}.{field}") };
                 collect(&path, item, found);
             }
         }
         _ => found.push((path.into(), item)),
+    }
+}
+
+fn in_order(fields: &Map<String, Value>) -> Vec<(&String, &Value)> {
+    let mut fields: Vec<_> = fields.iter().collect();
+    fields.sort_by_key(|(field, _)| rank(field));
+    fields
+}
+
+/// What is in a table, each with its key; nothing for what is none.
+pub fn entries(value: &Value) -> Vec<(String, &Value)> {
+    match value {
+        Value::Array(items) => (1..).zip(items).map(|(place, item): (u32, _)| (place.to_string(), item)).collect(),
+        Value::Object(fields) if marker(value).is_none() => {
+            in_order(fields).into_iter().map(|(field, item)| (field.clone(), item)).collect()
+        }
+        _ => Vec::new(),
     }
 }
 
@@ -258,16 +273,6 @@ fn is_silent(value: &Value) -> bool {
         Value::Array(items) => items.is_empty(),
         _ => false,
     }
-}
-
-/// The latest numbers as bars of eight heights, the newest at the right.
-pub fn sparkline(history: &[f64], columns: u16) -> String {
-    const BARS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
-    let shown = &history[history.len().saturating_sub(columns as usize)..];
-    let low = shown.iter().copied().fold(f64::INFINITY, f64::min);
-    let high = shown.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let height = |n: f64| if high > low { ((n - low) / (high - low) * 7.0).round() as usize } else { 0 };
-    shown.iter().map(|&n| BARS[height(n).min(7)]).collect()
 }
 
 /// How much of a timeout is over.

@@ -6,12 +6,13 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
+use std::thread::{Builder, JoinHandle};
 use std::time::{Duration, Instant};
 
 use crossterm::event::{Event as TerminalEvent, KeyCode, KeyModifiers};
 use ratatui::layout::Size;
 
-use super::app::{App, Effect, Event, Options};
+use super::app::{App, Effect, Event, Options, WriteBack};
 use super::editor::{Launch, Manner, Surroundings};
 use super::input::{Hold, Input, Received};
 use super::terminal::Screen;
@@ -23,6 +24,7 @@ use crate::session::headless::STUCK;
 use crate::session::live::{Session, Setup};
 use crate::session::signals::{Signal, Signals};
 use crate::session::trace::Trace;
+use crate::session::write_back::NotWritten;
 
 /// Frames are at least this far apart while the engine talks; a key is answered at once.
 const FRAME: Duration = Duration::from_millis(40);
@@ -32,6 +34,7 @@ enum Happened {
     News(News),
     Signal(Signal),
     EditorEnded(Result<(), String>),
+    Written(Vec<(WriteBack, Result<(), NotWritten>)>),
 }
 
 /// Exit code 0: quit, terminated or hung up; 1: it couldn't begin or failed; 130: interrupted.
@@ -84,20 +87,31 @@ fn live(setup: Setup, trace: Option<PathBuf>) -> Result<ExitCode, String> {
         input,
         trace,
         happened,
+        writing: Vec::new(),
         held: None,
         warned: false,
         failed: None,
         explain: Explain::Off,
     };
     let code = live.run(&inbox);
-    let Live { screen, session, failed, mut trace, .. } = live;
+    let Live { mut app, screen, session, failed, mut trace, writing, .. } = live;
     drop(session);
     drop(screen);
+    // A panic there has been reported.
+    writing.into_iter().for_each(|writing| drop(writing.join()));
     // The robot's stop, and what came before it.
     for happened in inbox.try_iter() {
-        if let (Happened::News(News::Records(records)), Some(trace)) = (happened, &mut trace) {
-            records.iter().for_each(|record| trace.record(record));
+        match (happened, &mut trace) {
+            (Happened::News(News::Records(records)), Some(trace)) => {
+                records.iter().for_each(|record| trace.record(record));
+            }
+            (Happened::Written(all), _) => app.written(all),
+            _ => (),
         }
+    }
+    for line in app.farewell() {
+        // Whoever hung up doesn't read it.
+        let _ = writeln!(io::stderr(), "{line}");
     }
     match failed {
         Some(why) => Err(why),
@@ -121,6 +135,8 @@ struct Live {
     input: Input,
     trace: Option<Trace>,
     happened: Sender<Happened>,
+    /// Files that are being written.
+    writing: Vec<JoinHandle<()>>,
     /// While an editor has the terminal.
     held: Option<Hold>,
     /// Said that an editor will cover the runstop.
@@ -219,6 +235,10 @@ impl Live {
             }
             Happened::News(News::Ended(End::TimeIsUp | End::Asked)) => Next::End(ExitCode::SUCCESS),
             Happened::EditorEnded(result) => self.editor_ended(result),
+            Happened::Written(all) => {
+                self.app.written(all);
+                Next::Answer
+            }
         }
     }
 
@@ -264,6 +284,7 @@ impl Live {
                 self.session.commands().send(command);
             }
             Effect::OpenEditor { file, line, column } => self.open_editor(&file, line, column),
+            Effect::WriteBack(all) => self.write_back(all),
             Effect::Quit => return Next::End(ExitCode::SUCCESS),
             Effect::Suspend => {
                 self.app.stopped();
@@ -279,6 +300,23 @@ impl Live {
             }
         }
         Next::Answer
+    }
+
+    /// Beside this thread: a disk may take its time, and the stop key must not wait for it.
+    fn write_back(&mut self, all: Vec<WriteBack>) {
+        let written = send(&self.happened, Happened::Written);
+        let write = move || {
+            let write = |it: WriteBack| {
+                let result = it.rewrite.write();
+                (it, result)
+            };
+            written(all.into_iter().map(write).collect());
+        };
+        self.writing.retain(|writing| !writing.is_finished());
+        match Builder::new().name("write".into()).spawn(write) {
+            Ok(writing) => self.writing.push(writing),
+            Err(error) => self.app.notice(format!("not written: the system is short of something: {error}")),
+        }
     }
 
     fn open_editor(&mut self, file: &Arc<str>, line: usize, column: usize) {

@@ -3,6 +3,7 @@
 
 pub mod action;
 pub mod app;
+pub mod curve;
 pub mod editor;
 pub mod foreground;
 pub mod format;

@@ -59,6 +59,11 @@ impl Theme {
         self.bold().patch(self.colour(Color::Yellow))
     }
 
+    /// Set by hand, and no file has it.
+    pub fn unwritten(self) -> Style {
+        self.colour(Color::Yellow)
+    }
+
     pub fn stop(self) -> Style {
         self.bold().patch(self.colour(Color::Red))
     }

@@ -110,6 +110,7 @@ fn commanded(command: &Command) -> String {
         Command::TransitionTo { state } => format!("transition-to {state}"),
         Command::JumpTo { state } => format!("jump-to {state}"),
         Command::Set { var, value } => format!("set {var} {value}"),
+        Command::Reset { var } => format!("reset {var}"),
         Command::Restart => "restart".into(),
         Command::Runstop => "runstop".into(),
         Command::FileChanged { file } => format!("file-changed {file}"),

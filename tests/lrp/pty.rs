@@ -277,3 +277,22 @@ fn a_full_disk_is_told_on_the_screen() {
     pty.type_in("q");
     assert_eq!(running.wait().exit_code(), 0);
 }
+
+#[test]
+fn a_tuned_value_is_written_into_the_file_and_one_that_is_not_is_named_at_the_end() {
+    let mut user = User::new();
+    let file = user.folder.path().join("line_follower.lrp");
+    let before = fs::read_to_string(&file).unwrap();
+    user.types("3/lightlim\rj>", &["variables  /lightlim", "*lightlim", "138", "1 unwritten"]);
+    user.types("w", &["written to line_follower.lrp: lightlim 138"]);
+    user.sees(&["saved: ~variable lightlim"]);
+    assert_eq!(fs::read_to_string(&file).unwrap(), before.replace("lightlim := [128]", "lightlim := [138]"));
+    user.traced("the initial value", |record| {
+        record["kind"] == "set" && record["var"] == "lightlim" && record["value"] == 138 && record["by"] == "init"
+    });
+    user.types(">", &["*lightlim", "148"]);
+    user.pty.type_in("q");
+    let told = "lightlim was set to 148 by hand; the file still has 138";
+    user.pty.wait_for(told, |screen| !screen.alternate_screen() && screen.contents().replace('\n', "").contains(told));
+    user.ends(0);
+}

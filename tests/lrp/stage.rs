@@ -248,6 +248,7 @@ pub fn read_event(text: &str) -> Event {
             let (var, value) = split(rest);
             Command::Set { var: var.into(), value: value.into() }
         }
+        "reset" => Command::Reset { var: rest.into() },
         "input" => {
             let (port, value) = split(rest);
             let (bridge, name) = port.split_once('.').expect("robot.input");

@@ -27,8 +27,8 @@ fn a_view_is_a_fold_of_records() {
     assert_eq!(view.states["follower/looking/lookalgo/lookleft"].visits, 4);
     assert_eq!(view.variables["follower/looking/lookalgo/time"].value, Some(json!(400)));
     assert_eq!(
-        Vec::from(view.variables["follower/looking/lookalgo/time"].history.clone()),
-        [100.0, 100.0, 200.0, 400.0]
+        view.variables["follower/looking/lookalgo/time"].history.sampled(view.t, 6),
+        [100.0, 200.0, 200.0, 400.0, 400.0, 400.0]
     );
     assert_eq!(view.bridges["robot"].inputs["light"].value, json!({ "data": 142 }));
     assert_eq!(view.world.as_ref().and_then(|world| world.pose).map(|pose| pose.x), Some(3.5));
@@ -170,6 +170,7 @@ fn deeds() -> impl Strategy<Value = Deed> {
     let vars = prop::sample::select(vec!["limit", "seen", "outer/count", "outer/b/inner/twice"]);
     let jump = states.clone().prop_map(|state| Command::JumpTo { state: state.into() });
     let transition = states.prop_map(|state| Command::TransitionTo { state: state.into() });
+    let reset = vars.clone().prop_map(|var| Command::Reset { var: var.into() });
     let set = (vars, -3i32..20).prop_map(|(var, value)| Command::Set { var: var.into(), value: value.to_string() });
     let mut plain = vec![Command::Pause, Command::Resume, Command::Restart, Command::Runstop];
     plain.extend([OnEdit::Keep, OnEdit::Restart].map(|mode| Command::OnEdit { mode }));
@@ -177,7 +178,7 @@ fn deeds() -> impl Strategy<Value = Deed> {
     prop_oneof![
         4 => (1u8..8).prop_map(Deed::Steps),
         1 => (0..7usize).prop_map(Deed::Load),
-        2 => prop_oneof![jump, transition, set, plain].prop_map(Deed::Command),
+        2 => prop_oneof![jump, transition, set, reset, plain].prop_map(Deed::Command),
     ]
 }
 

@@ -99,6 +99,7 @@ impl Functions<'_> {
         self.add("set(path, value)", |_, api, (var, value): (String, Value)| {
             Ok(api.command(Command::Set { var, value: source(&value)? })?)
         })?;
+        self.add("reset(path)", |_, api, var: String| Ok(api.command(Command::Reset { var })?))?;
         self.breaking("break_at(state, transition or {condition =, machine =})", Breaking::Set)?;
         self.breaking("clear_break(state, transition or {condition =, machine =})", Breaking::Clear)?;
         self.add("reply(call, value)", |_, _, (call, _): (String, Value)| -> mlua::Result<()> {

@@ -144,6 +144,7 @@ fn command(command: &Command) -> String {
         Command::TransitionTo { state } => format!("transition to {state}"),
         Command::JumpTo { state } => format!("jump to {state}"),
         Command::Set { var, value } => format!("set {var} to {value}"),
+        Command::Reset { var } => format!("reset {var}"),
         Command::Restart => "restart".to_string(),
         Command::Runstop => "runstop".to_string(),
         Command::FileChanged { file } => format!("file {file} changed"),

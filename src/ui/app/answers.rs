@@ -10,7 +10,7 @@ use crate::runtime::Explain;
 use crate::ui::action::Action;
 use crate::ui::layout::{Layout, Pane, Simulated, Wish};
 use crate::ui::panes::diagram::Diagram;
-use crate::ui::scope::Listing;
+use crate::ui::scope::{Arrangement, Listing, Row};
 use crate::ui::theme::Theme;
 use crate::ui::tree;
 use crate::ui::view::{Edit, Outcome, Path, View};
@@ -86,7 +86,20 @@ impl App {
     }
 
     pub fn values(&self) -> Listing {
-        Listing::new(&self.view, self.machine())
+        Listing::new(&self.view, self.machine(), &self.arrangement)
+    }
+
+    pub fn arrangement(&self) -> &Arrangement {
+        &self.arrangement
+    }
+
+    /// The variable a person is at, also inside its table; or what comes from the robot.
+    pub fn selected_variable(&self) -> Option<Path> {
+        let path = self.value.as_ref()?;
+        match self.values().row(path) {
+            Some(Row::Item { root, .. }) => Some(root.clone()),
+            _ => Some(path.clone()),
+        }
     }
 
     pub fn tree_top(&self) -> usize {
@@ -116,6 +129,8 @@ impl App {
         match action {
             Action::ApplyHeld | Action::DropHeld | Action::HeldEdit => self.view.held.is_some(),
             Action::GiveBack => self.view.lost().next().is_some(),
+            Action::WriteBack => self.selected_variable().is_some_and(|path| self.unwritten_value(&path).is_some()),
+            Action::Reset => self.value.as_ref().is_some_and(|path| self.view.by_hand.contains_key(path)),
             _ => true,
         }
     }

@@ -256,7 +256,7 @@ impl App {
         self.tree_top = top_for(self.tree_top, at, rows.len(), self.page(Pane::Machines));
         let listing = self.values();
         let (rows, height) = listing.shares(self.page(Pane::Variables)).upper;
-        let at = listing.position(self.value.as_ref()).filter(|&at| at < rows);
-        self.values_top = top_for(self.values_top, at, rows, height);
+        let at = listing.position(self.value.as_ref()).filter(|at| rows.contains(at)).map(|at| at - rows.start);
+        self.values_top = top_for(self.values_top, at, rows.len(), height);
     }
 }

@@ -31,6 +31,11 @@ impl App {
             Action::Decrease => return self.nudge(Nudge::Down),
             Action::IncreaseMuch => return self.nudge(Nudge::FarUp),
             Action::DecreaseMuch => return self.nudge(Nudge::FarDown),
+            Action::WriteBack => return self.write_selected(),
+            Action::WriteAll => return self.write_all(),
+            Action::Reset => return self.reset(),
+            Action::Pin => return self.pin(),
+            Action::Search => return self.search(),
             Action::SwitchOnEdit => return self.switch_on_edit(),
             Action::SwitchSaves => return self.switch_saves(),
             Action::HeldEdit => return self.show_held(),
@@ -160,6 +165,8 @@ impl App {
     fn back(&mut self) {
         if self.extent == Extent::Alone {
             self.extent = Extent::Shared;
+        } else if self.focus == Pane::Variables && !self.arrangement.filter.is_empty() {
+            self.arrangement.filter.clear();
         } else if self.reading.place.is_some() && self.focus == Pane::Log {
             self.read_newest();
         } else if self.figure != Figure::Graph || Figure::of(self.focus).is_some() {

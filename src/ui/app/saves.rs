@@ -9,7 +9,7 @@ use crate::ui::format;
 use crate::ui::key::Key;
 use crate::ui::layout::Pane;
 use crate::ui::panes::held;
-use crate::ui::view::name;
+use crate::ui::view::{Edit, name};
 
 const NOTHING_HELD: &str = "no edit is held; S holds the next saves";
 
@@ -21,6 +21,9 @@ impl App {
         }
         if matches!(self.overlay, Overlay::Held { .. }) {
             self.overlay = Overlay::Nothing;
+        }
+        if let Some(Edit::Taken(outcome)) = &self.view.edit {
+            self.written.retain(|path, _| !outcome.gives(path));
         }
     }
 

@@ -1,4 +1,4 @@
-//! Typing a value for a variable, or a condition to pause at: one line at the bottom, so that nothing is covered.
+//! Typing a value for a variable, a condition to pause at, or what variables are called: one line at the bottom, so that nothing is covered.
 
 use crossterm::event::{Event as TerminalEvent, KeyCode, KeyEvent, KeyModifiers};
 use tui_input::Input;
@@ -24,6 +24,8 @@ pub enum Goal {
     Value(Path),
     /// To pause when it becomes true, as seen from a machine; empty: from top level.
     Condition(Path),
+    /// A part of the names that are listed.
+    Filter,
 }
 
 /// Whose words stand in the line.
@@ -43,13 +45,14 @@ impl Goal {
         match self {
             Goal::Value(var) => *var = renames.variable(var),
             Goal::Condition(machine) => *machine = renames.place(machine),
+            Goal::Filter => (),
         }
     }
 }
 
 impl App {
     pub(super) fn begin_typing(&mut self) -> Vec<Effect> {
-        let Some(var) = self.value.clone() else { return self.say(NOTHING_SELECTED) };
+        let Some(var) = self.selected_variable() else { return self.say(NOTHING_SELECTED) };
         // What can't be set is said, and letters typed all the same are no commands.
         self.message = self.refusal(&var);
         let value = self.view.variables.get(&var).and_then(|variable| variable.value.as_ref());
@@ -60,8 +63,15 @@ impl App {
 
     pub(super) fn type_on(&mut self, event: KeyEvent) -> Vec<Effect> {
         let Overlay::Typing(typing) = &mut self.overlay else { return Vec::new() };
+        let filters = typing.goal == Goal::Filter;
         match event.code {
-            KeyCode::Esc => self.overlay = Overlay::Nothing,
+            KeyCode::Esc => {
+                self.overlay = Overlay::Nothing;
+                if filters {
+                    self.arrangement.filter.clear();
+                }
+            }
+            KeyCode::Enter if filters => self.overlay = Overlay::Nothing,
             KeyCode::Enter => return self.finish_typing(),
             code => {
                 let replaces =
@@ -70,6 +80,9 @@ impl App {
                     typing.input.reset();
                 }
                 typing.input.handle_event(&TerminalEvent::Key(event));
+                if filters {
+                    self.arrangement.filter = typing.input.value().trim().to_owned();
+                }
             }
         }
         Vec::new()
@@ -79,6 +92,7 @@ impl App {
         let Overlay::Typing(typing) = &self.overlay else { return Vec::new() };
         let (goal, text) = (typing.goal.clone(), typing.input.value().trim().to_owned());
         let command = match goal {
+            Goal::Filter => return Vec::new(),
             Goal::Value(_) if text.is_empty() => {
                 return self.say("a value is a Lua expression, as in 128 or {x = 1}; Esc leaves");
             }

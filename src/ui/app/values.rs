@@ -1,10 +1,12 @@
-//! Nudging a variable's value: numbers by a tenth in round steps, booleans over and back.
+//! Nudging a variable's value: numbers by a tenth in round steps, booleans over and back; opening tables, pinning.
 
 use serde_json::{Number, Value};
+use tui_input::Input;
 
-use super::{App, Effect};
+use super::{App, Effect, Goal, Overlay, Text, Typing};
 use crate::runtime::command::Command;
 use crate::ui::format;
+use crate::ui::scope::Row;
 
 pub(super) const NOTHING_SELECTED: &str = "no variable is selected; Down selects the first";
 
@@ -29,6 +31,10 @@ impl App {
 
     pub(super) fn nudge(&mut self, nudge: Nudge) -> Vec<Effect> {
         let Some(path) = self.value.clone() else { return self.say(NOTHING_SELECTED) };
+        let listing = self.values();
+        if let Some(row) = listing.row(&path).filter(|row| matches!(row, Row::Item { .. }) || self.opens(row)) {
+            return self.open_or_close(row, nudge);
+        }
         if let Some(refusal) = self.refusal(&path) {
             return self.say(refusal);
         }
@@ -42,6 +48,53 @@ impl App {
         let Some(value) = format::source(&next) else { return Vec::new() };
         self.nudged = Some((path.clone(), next));
         vec![Effect::Command(Command::Set { var: path.to_string(), value })]
+    }
+}
+
+impl App {
+    fn opens(&self, row: &Row) -> bool {
+        row.inside(&self.view).is_some()
+    }
+
+    /// As in the machines: what is closed already is left for what is around it.
+    fn open_or_close(&mut self, row: &Row, nudge: Nudge) -> Vec<Effect> {
+        let Some(path) = row.path().cloned() else { return Vec::new() };
+        match (is_up(nudge), row) {
+            (true, _) if self.opens(row) => _ = self.arrangement.open.insert(path),
+            (false, _) if self.opens(row) && self.arrangement.open.remove(&path) => (),
+            (false, Row::Item { .. }) => self.value = path.rsplit_once('.').map(|(outer, _)| outer.into()),
+            (true, Row::Item { root, .. }) => {
+                return self.say(format!("{path} is part of a table; e at {root} types the whole of it"));
+            }
+            _ => return self.refusal(&path).map_or_else(Vec::new, |refusal| self.say(refusal)),
+        }
+        Vec::new()
+    }
+
+    pub(super) fn reset(&mut self) -> Vec<Effect> {
+        let Some(path) = self.selected_variable() else { return self.say(NOTHING_SELECTED) };
+        if let Some(refusal) = self.refusal(&path) {
+            return self.say(refusal);
+        }
+        self.nudged = None;
+        vec![Effect::Command(Command::Reset { var: path.to_string() })]
+    }
+
+    pub(super) fn pin(&mut self) -> Vec<Effect> {
+        let Some(path) = self.selected_variable() else { return self.say(NOTHING_SELECTED) };
+        let pinned = &mut self.arrangement.pinned;
+        match pinned.iter().position(|pinned| *pinned == path) {
+            Some(at) => _ = pinned.remove(at),
+            None => pinned.push(path),
+        }
+        Vec::new()
+    }
+
+    /// What is called as typed is listed while it is typed.
+    pub(super) fn search(&mut self) -> Vec<Effect> {
+        let input = Input::new(self.arrangement.filter.clone());
+        self.overlay = Overlay::Typing(Typing { goal: Goal::Filter, input, text: Text::Present });
+        Vec::new()
     }
 }
 

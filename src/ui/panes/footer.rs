@@ -59,11 +59,13 @@ fn draw_typing(app: &App, typing: &Typing, mut pen: Pen, area: Rect) -> Position
     let theme = app.theme();
     let (before, sign) = match &typing.goal {
         Goal::Value(var) => (var.to_string(), " = "),
+        Goal::Filter => ("variables called".into(), " "),
         Goal::Condition(machine) if machine.is_empty() => ("pause when".into(), " "),
         Goal::Condition(machine) => (format!("{}: pause when", name(machine)), " "),
     };
     if pen.room() >= 58 {
-        pen.put_right("Enter sets  Esc leaves", theme.dim()).put_right("  ", theme.dim());
+        let hint = if typing.goal == Goal::Filter { "Enter keeps  Esc shows all" } else { "Enter sets  Esc leaves" };
+        pen.put_right(hint, theme.dim()).put_right("  ", theme.dim());
     }
     pen.put(&format::fit(&before, pen.room() / 2), theme.bold()).put(sign, theme.dim());
     let (start, room) = (pen.at(), pen.room().saturating_sub(1));

@@ -60,6 +60,7 @@ pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) {
         let words = reason_in(reason, pen.room().saturating_sub(1));
         pen.put(&words, style).put("  ", theme.normal());
     }
+    draw_unwritten(app, room, &mut pen);
     draw_edit(app, &mut pen);
 }
 
@@ -198,6 +199,22 @@ fn draw_bridges(app: &App, room: Room, pen: &mut Pen) {
         if pen.room() > format::width(&words) {
             pen.put(&words, style).put("  ", theme.normal());
         }
+    }
+}
+
+/// How many values were set by hand that no file has, where nothing more important needs the room.
+fn draw_unwritten(app: &App, room: Room, pen: &mut Pen) {
+    let n = app.unwritten().count();
+    let words = [format!("{n} set by hand, not written"), format!("{n} unwritten"), format!("*{n}")];
+    let words = match room {
+        Room::Ample => &words[..],
+        Room::Usual => &words[1..],
+        Room::Scarce => &words[2..],
+    };
+    let edit = app.view().edit.as_ref().map_or(0, |edit| format::width(&edit_words(app, edit).0) + 4);
+    let fitting = words.iter().find(|words| pen.room() >= format::width(words) + edit);
+    if let Some(words) = fitting.filter(|_| n > 0) {
+        pen.put(words, app.theme().dim()).put("  ", Style::new());
     }
 }
 

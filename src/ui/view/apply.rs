@@ -53,6 +53,7 @@ impl View {
             Command::OnError { mode } => self.choices.on_error = *mode,
             Command::Explain { .. } => self.guards.clear(),
             Command::DropHeld => self.drop_held(),
+            Command::Reset { var } => self.reset(var),
             Command::PutAtStart { bridge } => {
                 self.journal.note(self.t, format!("{bridge} put at its start"));
                 if let Some(world) = self.world.as_mut().filter(|world| *world.bridge == **bridge) {

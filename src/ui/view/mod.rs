@@ -6,6 +6,7 @@ mod breakpoints;
 mod bridge;
 mod edit;
 mod evidence;
+mod history;
 mod journal;
 mod machine;
 mod mode;
@@ -24,6 +25,7 @@ use serde_json::Value;
 pub use breakpoints::transition_text;
 pub use bridge::{Bridge, Message};
 pub use edit::{Edit, Outcome, describe, describe_shortly};
+pub use history::{History, PERIOD_MS};
 pub use journal::{Cause, Entry, Journal, Kind};
 pub use machine::{Machine, State, Timeout, Which};
 pub use mode::{Choices, Mode, is_own_doing};
@@ -63,6 +65,8 @@ pub struct View {
     pub variables: BTreeMap<Path, Variable>,
     /// Values set by hand that initial values replaced since.
     pub tuned: BTreeMap<Path, Value>,
+    /// What a person set each variable to last, as long as nothing else but its initialiser set it since.
+    pub by_hand: BTreeMap<Path, Value>,
     pub bridges: BTreeMap<Path, Bridge>,
     /// The latest transitions, oldest first.
     pub taken: VecDeque<(Time, Taken)>,
@@ -99,6 +103,7 @@ impl View {
             states: BTreeMap::new(),
             variables: BTreeMap::new(),
             tuned: BTreeMap::new(),
+            by_hand: BTreeMap::new(),
             bridges: BTreeMap::new(),
             taken: VecDeque::new(),
             guards: BTreeMap::new(),

@@ -94,6 +94,7 @@ impl View {
         self.variables.values_mut().for_each(|variable| variable.by = renames.doer(&variable.by));
         rekey(&mut self.variables, |path| renames.variable(path));
         rekey(&mut self.tuned, |path| renames.variable(path));
+        rekey(&mut self.by_hand, |path| renames.variable(path));
         self.taken.iter_mut().for_each(|(_, taken)| renames.taken(taken));
         self.journal.rename(|var| renames.variable(var));
         for breakpoint in &mut self.breakpoints {

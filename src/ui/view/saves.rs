@@ -18,6 +18,9 @@ impl View {
         self.guards.clear();
         self.rename(&Renames::of(&load.changes));
         self.note_edit(&edit);
+        if let Edit::Taken(outcome) = &edit {
+            self.given_by(outcome);
+        }
         self.edit = Some(edit);
         self.end_again(&load.again, &load.discarded);
         if let Some(program) = &load.program {
@@ -46,6 +49,7 @@ impl View {
         self.states.retain(|path, _| program.state(path).is_some());
         self.variables.retain(|path, _| program.var(path).is_some());
         self.tuned.retain(|path, _| program.var(path).is_some());
+        self.by_hand.retain(|path, _| program.var(path).is_some());
         self.program = Some(program.clone());
     }
 

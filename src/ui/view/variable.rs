@@ -1,14 +1,10 @@
 //! A variable's value, what it was before and how it moved.
 
-use std::collections::VecDeque;
-
 use serde_json::Value;
 
 use super::Path;
+use super::history::History;
 use crate::runtime::time::Time;
-
-/// How many of a number's latest values are kept.
-pub const HISTORY: usize = 32;
 
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Variable {
@@ -18,15 +14,15 @@ pub struct Variable {
     pub changed: Time,
     /// What set it last: the path of the state, event or machine; `init`; or `command`.
     pub by: Path,
-    /// Its latest values, oldest first, while they are numbers.
-    pub history: VecDeque<f64>,
+    /// While its values are numbers.
+    pub history: History,
 }
 
 impl Variable {
     pub fn set(&mut self, value: &Value, by: &Path, at: Time) {
         match value.as_f64() {
-            Some(number) => self.remember(number),
-            None => self.history.clear(),
+            Some(number) => self.history.remember(number, at),
+            None => self.history = History::default(),
         }
         self.previous = self.value.replace(value.clone());
         self.changed = at;
@@ -51,12 +47,5 @@ impl Variable {
     /// Whether a change is recent enough to be shown as one: a second of program time.
     pub fn is_fresh(&self, now: Time) -> bool {
         self.previous.is_some() && self.previous != self.value && now.since(self.changed) < Time(1_000_000)
-    }
-
-    fn remember(&mut self, number: f64) {
-        if self.history.len() == HISTORY {
-            self.history.pop_front();
-        }
-        self.history.push_back(number);
     }
 }

@@ -91,6 +91,13 @@ test("outputs are those of the last step, with the defaults filled in", function
   t:expect_output("robot.move", function(m) return m.linear.x == 1 end)
 end)
 
+test("reset gives a variable its initial value again", function(t)
+  t:source(one)
+  t:set("m/x", 5)
+  t:reset("m/x")
+  is(t, t:get("m/x"), 1)
+end)
+
 test("transition_to runs actions, jump_to doesn't", function(t)
   t:source(one)
   t:transition_to("m/b")

@@ -173,7 +173,7 @@ fn event(choices: &mut Choices, engine: &Engine) -> Event {
     let vars = &engine.program().vars;
     let state = choices.of(states).map(|state| state.path.to_string()).unwrap_or_default();
     let var = choices.of(vars).map(|var| var.path.to_string()).unwrap_or_default();
-    Event::Command(match choices.below(23) {
+    Event::Command(match choices.below(24) {
         0 => Command::Pause,
         1 | 2 => Command::Resume,
         3 => Command::TransitionTo { state },
@@ -199,6 +199,7 @@ fn event(choices: &mut Choices, engine: &Engine) -> Event {
             None => Command::OnError { mode: OnError::Continue },
         },
         21 => Command::OnError { mode: OnError::Pause },
+        22 => Command::Reset { var },
         _ => {
             let value = json!({ "data": choices.below(4) });
             return Event::Input(Input { bridge: "robot".into(), name: "light".into(), value });

@@ -1,8 +1,16 @@
 //! A variable with its history, or a field of a robot's message.
 
 use super::{Page, Tone, place};
+use crate::ui::curve;
 use crate::ui::format;
 use crate::ui::scope::Row;
+use crate::ui::view::{History, PERIOD_MS};
+
+/// Columns of a curve at most, half a second each, and its rows.
+const CURVE: u16 = 64;
+const ROWS: usize = 4;
+/// Columns of a number beside it.
+const LABEL: u16 = 10;
 
 impl Page<'_> {
     pub(super) fn variable(&mut self) {
@@ -31,20 +39,48 @@ impl Page<'_> {
                     by => &format!("by {by}"),
                 };
                 self.add_wrapped(Tone::Aside, &format!("set at {} {by}", format::clock(variable.changed)));
-                let history: Vec<f64> = variable.history.iter().copied().collect();
-                self.add(Tone::Text, format::sparkline(&history, 32));
+                if let Some(value) = app.unwritten_value(path) {
+                    let text = format!("set to {} by hand; the file doesn't have it (w)", format::value(value));
+                    self.add_wrapped(Tone::Aside, &text);
+                }
+                self.curve(&variable.history);
             }
             None => self.field(path),
         }
     }
 
+    /// Its greatest and least number at the right of it.
+    fn curve(&mut self, history: &History) {
+        let numbers = history.sampled(self.app.view().t, usize::from(self.width.saturating_sub(LABEL).min(CURVE)));
+        if !curve::moves(&numbers) {
+            return;
+        }
+        let (low, high) = curve::bounds(&numbers);
+        for (row, text) in curve::rows(&numbers, ROWS).into_iter().enumerate() {
+            let label = match row {
+                0 => format::number(high),
+                _ if row == ROWS - 1 => format::number(low),
+                _ => String::new(),
+            };
+            self.add_at(Tone::Text, text, label);
+        }
+        let span = format::duration(numbers.len() as f64 * PERIOD_MS);
+        self.add(Tone::Aside, format!("the last {span}"));
+    }
+
     fn field(&mut self, path: &str) {
         for row in self.app.values().rows {
-            if let Row::Field { path: other, value, at, .. } | Row::Message { path: other, value, at, .. } = row
-                && *other == *path
-            {
-                self.add_wrapped(Tone::Text, &format::value(&value));
-                self.add(Tone::Aside, format!("at {}", format::clock(at)));
+            match row {
+                Row::Field { path: other, value, at, .. } | Row::Message { path: other, value, at, .. }
+                    if *other == *path =>
+                {
+                    self.add_wrapped(Tone::Text, &format::value(&value));
+                    self.add(Tone::Aside, format!("at {}", format::clock(at)));
+                }
+                Row::Item { path: other, value, .. } if *other == *path => {
+                    self.add_wrapped(Tone::Text, &format::value(&value));
+                }
+                _ => (),
             }
         }
     }
