@@ -22,6 +22,7 @@ pub mod program;
 pub mod renamed;
 pub mod resolve;
 mod suggestion;
+pub mod transition_names;
 mod words;
 
 pub use description::Description;

@@ -46,6 +46,7 @@ impl View {
         self.variables.retain(|path, _| program.var(path).is_some());
         self.tuned.retain(|path, _| program.var(path).is_some());
         self.program = Some(program.clone());
+        self.find_transitions();
     }
 
     /// Told again where it would do something else now: that is no news of a save.

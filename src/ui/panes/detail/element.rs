@@ -1,13 +1,13 @@
 //! A machine with its events; a state with its actions, its times and the ways out of it.
 
 use super::{Line, Page, Tone, place};
-use crate::model::diff::trigger_text;
+use crate::model::transition_names::trigger_text;
 use crate::model::{BlockId, Entry, MachineId, Program, Sources, StateId, TransitionKind, Trigger};
 use crate::runtime::record::Setter;
 use crate::ui::format;
 use crate::ui::panes::breakpoints::mark;
 use crate::ui::tree::{self, Element};
-use crate::ui::view::{name, transition_text};
+use crate::ui::view::name;
 
 impl Page<'_> {
     pub(super) fn element(&mut self) {
@@ -86,7 +86,7 @@ impl Page<'_> {
             let name = transition.name.as_ref().map_or(String::new(), |name| format!("  {name}"));
             let cause = format!("{form} {trigger}");
             let text = format!("{} → {}{name}", cause.trim_end(), transition.target_name);
-            let text = match self.app.view().breaks_at_transition(&transition_text(program, id)) {
+            let text = match self.app.view().breaks_at_transition(id) {
                 Some(by) => format!("{} {text}", mark(by)),
                 None => text,
             };
