@@ -54,7 +54,8 @@ pub fn set_at_transition(choices: &mut Choices, program: &Program) -> Option<Com
     let id = TransitionId(choices.below(program.transitions.len()) as u32);
     let there = program.transitions.get(id.0 as usize)?;
     let transition = TransitionNames::of(program).name(id);
-    (there.breakpoint.is_none()).then(|| Command::Break { at: BreakAt::Transition { transition }, mode: Breaking::Set })
+    let command = Command::Break { at: BreakAt::Transition { transition }, mode: Breaking::Set };
+    there.breakpoint.is_none().then_some(command)
 }
 
 /// A transition is its machine, its text, and how many equal ones stand before it.
