@@ -5,6 +5,25 @@ use super::element::{Alias, ElementId, Kind};
 use super::matching::{Key, Matching, Side};
 use super::program::Program;
 
+/// What went by another name in the program that runs, where it is still there and nothing else is called so by now.
+/// Whatever else is wrong with the program, what named it goes on.
+pub fn carry(running: &Program, program: &Program) -> Option<Alias> {
+    let Alias { name, means } = running.alias.as_ref()?;
+    if !Matching::unresolved(program).contains(&(means.kind, &**name)) {
+        return None;
+    }
+    let now = Matching::of(running, program).now(*means)?;
+    let mut beside = program.all(now.kind).filter(|&it| program.scope(it) == program.scope(now));
+    beside.all(|it| program.name(it) != name).then(|| Alias { name: name.clone(), means: now })
+}
+
+/// Whether with its alias a program gives more names a meaning than without, and to the element that had it before.
+pub fn serves(running: &Program, program: &Program, without: &Program) -> bool {
+    let means = |program: &Program| program.alias.as_ref().map(|alias| alias.means);
+    let is_the_same = means(running).and_then(|was| Matching::of(running, program).now(was)) == means(program);
+    is_the_same && Matching::unresolved(program).len() < Matching::unresolved(without).len()
+}
+
 /// The one element that the one missing name of a program could mean, going by what it meant in the program that runs.
 pub fn propose(running: &Program, program: &Program) -> Option<Alias> {
     let (kind, name) = only_missing(program)?;
@@ -25,7 +44,7 @@ pub fn holds(running: &Program, program: &Program) -> bool {
     let was = Matching::of(running, program).was(alias.means);
     let had_it =
         |was: ElementId| *running.name(was) == alias.name || running.alias(alias.means.kind, &alias.name) == Some(was);
-    was.is_some_and(had_it) && Matching::is_complete(program)
+    was.is_some_and(had_it) && Matching::unresolved(program).is_empty()
 }
 
 /// What the errors of a program are about, where all of them are about one name.

@@ -4,6 +4,7 @@ use super::link::renamed_words;
 use super::names::Names;
 use super::program::{Block, Program};
 use crate::lua::{self, Checker, NameUse};
+use crate::syntax::lua_names::{Word, words};
 use crate::syntax::lua_tokens::{TokenKind, tokens};
 use crate::syntax::nearest::nearest;
 use crate::syntax::{Code, Diagnostic, Source, Span};
@@ -71,7 +72,7 @@ fn unknown_name(
     if is_known && access == Access::Read {
         return None;
     }
-    let span = place(program.source(block.span), block.span, name.line, Some((&name.name, Role::Name)));
+    let span = place(program.source(block.span), block.span, name.line, Some((&name.name, Role::Free)));
     match access {
         Access::Write if is_known => {
             let message = format!("`{}` can't be assigned: it is not a variable of this program", name.name);
@@ -201,6 +202,8 @@ fn smalltalk(code: &str, near: usize) -> Option<&'static str> {
 /// What a sought name is in the code.
 #[derive(Clone, Copy, PartialEq)]
 pub enum Role {
+    /// Found outside the block: no local, no field, no key of a table.
+    Free,
     /// Not a field.
     Name,
     /// After a dot or a colon.
@@ -231,14 +234,20 @@ fn find_name(source: &Source, block: Span, range: std::ops::Range<usize>, (name,
     let offset = block.start as usize;
     let mut after_dot = false;
     let mut other = None;
-    for token in tokens(code).filter(|token| !matches!(token.kind, TokenKind::Comment)) {
+    for Word { token, is_free } in words(code) {
         let text = &code[token.range.clone()];
         let is_field = std::mem::replace(&mut after_dot, matches!(text, "." | ":"));
         if text != name || !range.contains(&(offset + token.range.start)) {
             continue;
         }
         let span = Span::new(block.file, offset + token.range.start, offset + token.range.end);
-        if role == Role::Any || (role == Role::Field) == is_field {
+        let is_it = match role {
+            Role::Free => is_free,
+            Role::Name => !is_field,
+            Role::Field => is_field,
+            Role::Any => true,
+        };
+        if is_it {
             return Some(span);
         }
         other.get_or_insert(span);

@@ -10,6 +10,7 @@ use super::element::{ElementId, Kind};
 use super::ids::*;
 use super::matching::{Key, Matching, Reading, Side};
 use super::program::*;
+use super::transition_names::TransitionNames;
 use crate::syntax::lua_tokens::same_code;
 
 pub fn diff(old: &Program, new: &Program, matching: &Matching) -> Vec<Change> {
@@ -137,9 +138,10 @@ impl<'p> Both<'p> {
         let ids = |program: &Program| (0..program.transitions.len() as u32).map(TransitionId);
         let removed = ids(old).filter(|&was| matching.transition(was).is_none());
         let added = ids(new).filter(|&now| matching.transition_was(now).is_none());
+        let (was_called, called) = (TransitionNames::of(old), TransitionNames::of(new));
         let change = |op| move |path| Change { op, kind: Element::Transition, path, to: None };
-        let mut changes: Vec<Change> = removed.map(|was| transition_name(old, was)).map(change(Op::Removed)).collect();
-        changes.extend(added.map(|now| transition_name(new, now)).map(change(Op::Added)));
+        let mut changes: Vec<Change> = removed.map(|was| was_called.name(was)).map(change(Op::Removed)).collect();
+        changes.extend(added.map(|now| called.name(now)).map(change(Op::Added)));
         changes
     }
 
@@ -211,49 +213,4 @@ fn compare<K: Hash + Eq, T: PartialEq>(kind: Element, old: Vec<Listed<K, T>>, ne
         Some(_) => None,
     });
     removed.chain(rest).collect()
-}
-
-/// As lists of changes and breakpoints name it: of equal transitions, the second and later ones have a number.
-pub fn transition_name(program: &Program, id: TransitionId) -> Arc<str> {
-    let transition = &program[id];
-    let key = transition_key(program, transition);
-    let before = program[transition.machine].transitions.iter().take_while(|&&other| other != id);
-    // Most differ in what is quickly compared.
-    let alike = before.map(|&other| &program[other]).filter(|other| {
-        other.kind == transition.kind && other.target_name == transition.target_name && other.name == transition.name
-    });
-    match alike.filter(|other| transition_key(program, other) == key).count() {
-        0 => key.into(),
-        twins => format!("{key} #{}", twins + 1).into(),
-    }
-}
-
-/// `follower: on bumping * -> bumpback`
-pub fn transition_key(program: &Program, transition: &Transition) -> String {
-    let sources = match &transition.sources {
-        Sources::Any => "*".to_string(),
-        Sources::These { names, .. } if names.len() == 1 => names[0].to_string(),
-        Sources::These { names, .. } => format!("({})", names.join(" ")),
-    };
-    let kind = transition.kind.form();
-    let trigger = trigger_text(program, &transition.trigger);
-    let space = if trigger.is_empty() { "" } else { " " };
-    let name = transition.name.as_ref().map(|name| format!(" {name}")).unwrap_or_default();
-    let machine = &program[transition.machine].path;
-    format!("{machine}: {kind} {trigger}{space}{sources} -> {}{name}", transition.target_name)
-}
-
-/// As written: an event's name, a number or variable of milliseconds, a block in its brackets; nothing for eps.
-pub fn trigger_text(program: &Program, trigger: &Trigger) -> String {
-    match trigger {
-        Trigger::Always => String::new(),
-        Trigger::Event(event) => program[*event].name.to_string(),
-        Trigger::UnknownEvent(name) | Trigger::AfterUnknown(name) => name.to_string(),
-        Trigger::After(ms) => ms.to_string(),
-        Trigger::AfterVar(var) => program[*var].name.to_string(),
-        Trigger::Block(block) | Trigger::AfterBlock(block) => {
-            let words: Vec<&str> = program[*block].code.split_whitespace().collect();
-            format!("[{}]", words.join(" "))
-        }
-    }
 }

@@ -19,6 +19,7 @@ pub struct Edit {
 pub struct Comparison {
     before: Arc<Program>,
     pub matching: Matching,
+    /// None where there was no program before: then there is nothing to compare with.
     pub changes: Vec<Change>,
 }
 
@@ -54,8 +55,11 @@ impl From<Program> for Edit {
 impl Comparison {
     fn between(before: &Arc<Program>, program: &Program) -> Comparison {
         let matching = Matching::of(before, program);
-        let mut changes = diff(before, program, &matching);
-        changes.extend(breakpoints::changes(before, program, &matching));
+        let mut changes = Vec::new();
+        if !before.sources.is_empty() {
+            changes.extend(diff(before, program, &matching));
+            changes.extend(breakpoints::changes(before, program, &matching));
+        }
         Comparison { before: Arc::clone(before), matching, changes }
     }
 }

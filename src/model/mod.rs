@@ -26,6 +26,7 @@ pub mod reads;
 pub mod renamed;
 pub mod resolve;
 mod suggestion;
+pub mod transition_names;
 pub mod ways;
 mod words;
 

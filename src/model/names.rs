@@ -2,9 +2,9 @@
 
 use std::sync::Arc;
 
-use super::element::Kind;
+use super::element::{ElementId, Kind};
 use super::ids::*;
-use super::program::Program;
+use super::program::{Block, Program, Sources, Transition};
 use crate::syntax::FileId;
 
 pub struct Names<'p> {
@@ -84,5 +84,32 @@ impl<'p> Names<'p> {
 
     pub fn machines(&self, state: Option<StateId>) -> Vec<Arc<str>> {
         self.machines_in_scope(state).map(|machine| self.program[machine].name.clone()).collect()
+    }
+}
+
+impl Program {
+    /// The sources as written, each with the state where there is one.
+    pub fn sources_of<'p>(
+        &'p self,
+        transition: &'p Transition,
+    ) -> impl Iterator<Item = (&'p str, Option<StateId>)> + use<'p> {
+        let (names, states): (&[_], &[StateId]) = match &transition.sources {
+            Sources::Any => (&[], &[]),
+            Sources::These { names, states } => (names, states),
+        };
+        let mut left = states.iter().copied().peekable();
+        names.iter().map(move |name| {
+            let goes_by = |state: &StateId| {
+                self[*state].name == *name || self.alias(Kind::State, name) == Some(ElementId::from(*state))
+            };
+            (&**name, left.next_if(goes_by))
+        })
+    }
+
+    /// The variable that a free name of a block is.
+    pub(super) fn var_in(&self, block: &Block, name: &str) -> Option<VarId> {
+        let named = block.uses.iter().copied().find(|&var| *self[var].name == *name);
+        let renamed = || block.uses.iter().copied().find(|&var| self.alias(Kind::Var, name) == Some(var.into()));
+        named.or_else(renamed)
     }
 }

@@ -313,6 +313,17 @@ impl State {
     }
 }
 
+impl TransitionKind {
+    pub fn form(self) -> &'static str {
+        match self {
+            TransitionKind::On => "on",
+            TransitionKind::Eps => "eps",
+            TransitionKind::Ontime => "ontime",
+            TransitionKind::Exit => "exit",
+        }
+    }
+}
+
 impl Transition {
     pub fn leaves(&self, state: StateId) -> bool {
         match &self.sources {

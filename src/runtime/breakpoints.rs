@@ -9,7 +9,8 @@ use super::engine::Engine;
 use super::met::Met;
 use super::obey::{Refused, refuse};
 use super::record::{Breakpoint, Level, Setter, What};
-use crate::model::breakpoints::{Following, Spot, SpotNames, in_source};
+use crate::model::breakpoints::{Spot, SpotNames, in_source};
+use crate::model::transition_names::TransitionNames;
 use crate::model::{Matching, Program, TransitionId};
 
 #[derive(Default)]
@@ -91,20 +92,19 @@ impl Engine {
     }
 
     fn transition_called(&self, name: &str) -> Result<TransitionId, Refused> {
-        let names = SpotNames::of(&self.program);
-        let known = || names.transitions().iter().map(|name| &**name);
-        names.transition_called(name).ok_or_else(|| refuse("transition", name, known()))
+        let names = TransitionNames::of(&self.program);
+        names.called(name).ok_or_else(|| refuse("transition", name, names.all().iter().map(|name| &**name)))
     }
 
     /// Another program was taken over: what is still there keeps its breakpoints.
     pub(super) fn follow_breakpoints(&mut self, old: &Program, matching: &Matching) {
         let new = Arc::clone(&self.program);
-        let (following, names) = (Following::new(old, &new, matching), SpotNames::of(old));
+        let names = SpotNames::of(old);
         let cleared = std::mem::take(&mut self.breakpoints.cleared).into_iter();
-        let still = cleared.filter_map(|spot| following.spot(spot)).filter(|spot| spot.is_in_source(&new));
+        let still = cleared.filter_map(|spot| spot.follow(matching)).filter(|spot| spot.is_in_source(&new));
         self.breakpoints.cleared = still.collect();
         for spot in std::mem::take(&mut self.breakpoints.set) {
-            match following.spot(spot) {
+            match spot.follow(matching) {
                 Some(now) => self.breakpoints.set.push(now),
                 None => self.breakpoint_gone(&place(spot, &names), "it is no longer there"),
             }

@@ -9,8 +9,8 @@ use super::met::Met;
 use super::obey::{Refused, refuse};
 use crate::lua::{self, Cell, FailureKind, Test};
 use crate::model::names::Names;
+use crate::model::renamed::{Captured, expression_now};
 use crate::model::{MachineId, Matching, Program};
-use crate::syntax::lua_tokens::{TokenKind, tokens};
 use crate::syntax::nearest::nearest;
 use crate::syntax::{Code, Span};
 
@@ -178,36 +178,17 @@ impl Engine {
                     }
                 },
             };
-            let code = self.with_names_of_now(&condition, old, matching);
-            match self.compile_condition(&code, machine) {
-                Ok(block) => {
+            let renamed = expression_now(&condition.code, old, condition.machine, &self.program, matching);
+            let renamed = renamed
+                .map_err(|Captured(name)| Refused(format!("its variable is called `{name}` now, as a local in it")));
+            match renamed.and_then(|code| Ok((self.compile_condition(&code, machine)?, code))) {
+                Ok((block, code)) => {
                     let seen = if condition.seen == Seen::True { Seen::True } else { Seen::False };
                     self.breakpoints.conditions.push(Condition { code, machine, block, seen });
                 }
                 Err(Refused(why)) => self.breakpoint_gone(&place, &why),
             }
         }
-    }
-
-    /// A condition's text, its variables called as they are now.
-    fn with_names_of_now(&self, condition: &Condition, old: &Program, matching: &Matching) -> Arc<str> {
-        let code = &*condition.code;
-        let (mut text, mut done, mut after_dot) = (String::new(), 0, false);
-        for token in tokens(code) {
-            let word = &code[token.range.clone()];
-            let is_field = std::mem::replace(&mut after_dot, matches!(word, "." | ":"));
-            if token.kind != TokenKind::Name || is_field {
-                continue;
-            }
-            let var = Names::of(old).var(condition.machine, word).and_then(|var| matching.var(var));
-            if let Some(var) = var {
-                text += &code[done..token.range.start];
-                text += &self.program[var].name;
-                done = token.range.end;
-            }
-        }
-        text += &code[done..];
-        text.into()
     }
 }
 

@@ -98,7 +98,8 @@ impl Store {
             return Vec::new();
         }
         let stopped = (0..self.blocks.len()).filter(|&index| self.blocks[index].stopped);
-        let codes = stopped.map(|index| (index, code_now(old, BlockId(index as u32), new, matching)));
+        let codes =
+            stopped.filter_map(|index| Some((index, code_now(old, BlockId(index as u32), new, matching).ok()?)));
         let renamed = codes.filter(|(index, code)| old.blocks[*index].code != *code);
         renamed.map(|(index, code)| self.keys[index].reading(code)).collect()
     }

@@ -8,7 +8,7 @@ use super::command::Explain;
 use super::engine::{Engine, Running};
 use super::record::{Answer, Way, What};
 use super::time::Time;
-use crate::model::diff::transition_name;
+use crate::model::transition_names::TransitionNames;
 use crate::model::ways::{guard_block, ways_out};
 use crate::model::*;
 
@@ -102,8 +102,9 @@ impl Engine {
     }
 
     fn spelled_out(&self, ways: &[TransitionId], findings: Vec<Finding>) -> Vec<Way> {
+        let names = TransitionNames::of(&self.program);
         let way = |(&id, Finding { answer, after, message })| Way {
-            transition: transition_name(&self.program, id),
+            transition: names.name(id),
             guard: answer,
             after,
             message,

@@ -109,9 +109,13 @@ impl Compiler {
     fn resolve(&mut self, running: &Program) -> Program {
         let files: Vec<File> = self.gathered.iter().map(Gathered::file).collect();
         let program = resolve_files(&files, &self.robots, &mut self.checker, None);
-        let Some(alias) = alias::propose(running, &program) else { return program };
-        let renamed = resolve_files(&files, &self.robots, &mut self.checker, Some(alias));
-        if alias::holds(running, &renamed) { renamed } else { program }
+        let mut with = |alias| resolve_files(&files, &self.robots, &mut self.checker, Some(alias));
+        let carried = alias::carry(running, &program).map(&mut with);
+        if let Some(carried) = carried.filter(|carried| alias::serves(running, carried, &program)) {
+            return carried;
+        }
+        let proposed = alias::propose(running, &program).map(with);
+        proposed.filter(|proposed| alias::holds(running, proposed)).unwrap_or(program)
     }
 
     /// The Lua files that the program's blocks require.

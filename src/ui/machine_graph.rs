@@ -1,7 +1,7 @@
 //! A program's machine as the graph to draw: states in source order, the wildcard source last, edges labelled.
 
 use super::graph::{Edge, EdgeKind, Graph, Nested, Node, NodeKind};
-use crate::model::diff::trigger_text;
+use crate::model::transition_names::trigger_text;
 use crate::model::{Entry, MachineId, Program, Sources, StateId, Transition, TransitionKind, Trigger};
 
 /// Columns of a block's text in a label.

@@ -87,6 +87,31 @@ fn large() -> String {
     text
 }
 
+/// Many ways between two states, half of them equal.
+fn crowded(limit: usize) -> Program {
+    let ways: String = (0..4000).map(|way| format!("(on [n > {}] a -> b)\n", way / 2 * limit)).collect();
+    compiled(&format!("(var n := [0]) (machine m (state a) (state b)\n{ways}) (spawn m a)"))
+}
+
+#[test]
+fn many_transitions_of_one_machine_are_named_in_no_time() {
+    let (old, new) = (crowded(1), crowded(3));
+    let start = Instant::now();
+    let changes = diff(&old, &new, &Matching::of(&old, &new));
+    let names = lrp::model::transition_names::TransitionNames::of(&new);
+    assert_eq!(names.called("m: on [n > 3] a -> b #2"), Some(lrp::model::TransitionId(3)));
+    // Every third limit stays.
+    assert_eq!(changes.len(), 2 * (4000 - 1334));
+    assert!(start.elapsed() < Duration::from_millis(500), "{:?}", start.elapsed());
+}
+
+#[test]
+fn a_first_program_is_compared_with_nothing() {
+    let (before, program) = (std::sync::Arc::default(), crowded(1));
+    let edit = lrp::model::Edit::of(&before, program);
+    assert_eq!(edit.comparison(&before).changes, []);
+}
+
 #[test]
 fn a_large_program_is_compared_in_no_time() {
     let text = large();

@@ -1,6 +1,7 @@
 //! The syntax layer: text in, tree and diagnostics out.
 
 pub mod any_block;
+mod any_lua;
 pub mod any_text;
 mod corpus;
 mod dump;

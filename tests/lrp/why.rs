@@ -3,10 +3,10 @@
 use std::fs;
 use std::path::PathBuf;
 
+use lrp::model::transition_names::TransitionNames;
 use lrp::model::ways::ways_out;
 use lrp::runtime::record::{Answer, Taken, Way};
 use lrp::runtime::{Command, Explain, Record, What};
-use lrp::ui::view::transition_text;
 use serde_json::json;
 
 use crate::frames::{check, frame, press, screen};
@@ -21,7 +21,7 @@ fn guards(story: &mut Story, state: &str, found: &[(Answer, Option<f64>, Option<
     let ways = ways_out(&program, program.state(state).expect("it is there"));
     assert_eq!(ways.len(), found.len());
     let way = |(&id, &(guard, after, message)): (_, &(Answer, _, Option<&str>))| Way {
-        transition: transition_text(&program, id).into(),
+        transition: TransitionNames::of(&program).name(id),
         guard,
         after,
         message: message.map(Into::into),

@@ -34,7 +34,7 @@ pub fn event_assigns(program: &Program) -> Vec<Diagnostic> {
 fn assigns(program: &Program, guard: Guard, block: &Block) -> Option<Diagnostic> {
     let var = &program[*block.writes.first()?].name;
     let line = block.facts.writes.iter().find(|name| *name.name == **var)?.line;
-    let span = place(program.source(block.span), block.span, line, Some((var, Role::Name)));
+    let span = place(program.source(block.span), block.span, line, Some((var, Role::Free)));
     let message = format!("{guard} assigns `{var}`");
     Some(match block.facts.gives {
         Gives::Nothing => Diagnostic::error(Code::EventAssigns, span, format!("{message} and gives nothing"))

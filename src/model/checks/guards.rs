@@ -1,9 +1,8 @@
-//! What is certain of a transition's guard before anything runs, and how a transition is called in a sentence.
+//! What is certain of a transition's guard before anything runs.
 
 use crate::lua::Gives;
 use crate::model::ids::*;
 use crate::model::program::*;
-use crate::model::suggestion::listed;
 
 /// What an event or a trigger is made of.
 pub fn condition(program: &Program, trigger: &Trigger) -> Option<BlockId> {
@@ -40,31 +39,4 @@ pub fn tested(program: &Program, state: StateId) -> impl Iterator<Item = Transit
     let exits = program[machine].parent.map_or(&[][..], |parent| &program[parent].exits);
     let leaves = move |&id: &TransitionId| program[id].machine == machine && program[id].leaves(state);
     exits.iter().copied().filter(leaves).chain(program[state].outgoing.iter().copied())
-}
-
-/// `(on stop (a b) -> c)`
-pub fn spelled(program: &Program, id: TransitionId) -> String {
-    let Transition { kind, sources, target_name, trigger, .. } = &program[id];
-    let keyword = match kind {
-        TransitionKind::On => "on",
-        TransitionKind::Eps => "eps",
-        TransitionKind::Ontime => "ontime",
-        TransitionKind::Exit => "exit",
-    };
-    let trigger = match trigger {
-        Trigger::Always => String::new(),
-        Trigger::Event(event) => format!(" {}", program[*event].name),
-        Trigger::UnknownEvent(name) | Trigger::AfterUnknown(name) => format!(" {name}"),
-        Trigger::After(ms) => format!(" {ms}"),
-        Trigger::AfterVar(var) => format!(" {}", program[*var].name),
-        Trigger::Block(_) | Trigger::AfterBlock(_) => " [..]".to_string(),
-    };
-    let sources = match sources {
-        Sources::Any => "*".to_string(),
-        Sources::These { names, .. } if names.len() == 1 => names[0].to_string(),
-        Sources::These { names, .. } => {
-            format!("({})", listed(&names.iter().map(|name| &**name).collect::<Vec<_>>()).replace(", ", " "))
-        }
-    };
-    format!("({keyword}{trigger} {sources} -> {target_name})")
 }

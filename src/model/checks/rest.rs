@@ -1,9 +1,10 @@
 //! States that are left as soon as they are entered, in a circle.
 
-use super::guards::{always, spelled, tested};
+use super::guards::{always, tested};
 use crate::model::ids::*;
 use crate::model::program::*;
 use crate::model::suggestion::listed;
+use crate::model::transition_names::spelled;
 use crate::syntax::{Code, Diagnostic};
 
 /// Circles of transitions that are always taken: each step takes one, and no state in it ever runs. A warning where

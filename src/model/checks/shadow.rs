@@ -1,9 +1,10 @@
 //! Transitions that are never taken, because an earlier one always is.
 
-use super::guards::{after, always, spelled, tested};
+use super::guards::{after, always, tested};
 use crate::lua::FieldUse;
 use crate::model::ids::*;
 use crate::model::program::*;
+use crate::model::transition_names::spelled;
 use crate::syntax::{Code, Diagnostic};
 
 /// Out of each of its states, an earlier transition is taken whenever this one could be: one that always is, one for the

@@ -96,11 +96,11 @@ impl Matching {
         }
     }
 
-    /// Whether every name in a program means something.
-    pub(super) fn is_complete(program: &Program) -> bool {
-        let mut complete = true;
-        uses::each_use(program, &mut |it| complete &= it.found.is_some());
-        complete
+    /// The names in a program that mean nothing, once for each place that says them.
+    pub(super) fn unresolved(program: &Program) -> Vec<(Kind, &str)> {
+        let mut names = Vec::new();
+        uses::each_use(program, &mut |it| names.extend(it.found.is_none().then_some((it.kind, it.name))));
+        names
     }
 
     /// Two elements of one kind.

@@ -115,7 +115,7 @@ impl Passage<'_> {
     fn block(&self, was: BlockId) -> Option<BlockId> {
         let (before, after) = self.homes(self.old[was].owner)?;
         let Block { code, requires, .. } = &self.old[was];
-        let renamed = code_now(self.old, was, self.new, self.matching);
+        let renamed = code_now(self.old, was, self.new, self.matching).unwrap_or_else(|_| code.clone());
         let nth = before.into_iter().filter(|&block| self.old[block].code == *code).position(|block| block == was)?;
         let same = |block: &BlockId| {
             let now = &self.new[*block];

@@ -42,8 +42,7 @@ impl Engine {
         self.changes.follow(&new);
         self.why.begin_anew(&new);
         self.program = Arc::clone(&new);
-        let changes = if first { Vec::new() } else { changes.clone() };
-        self.rare(What::Load(loaded(&new, changes, &verdict)));
+        self.rare(What::Load(loaded(&new, changes.clone(), &verdict)));
         self.follow_breakpoints(&old, matching);
         ended.into_iter().for_each(|machine| self.rare(What::Discard { machine }));
         still.into_iter().for_each(|fault| self.rare(What::Error(fault)));

@@ -5,6 +5,7 @@ use tui_input::Input;
 use super::movement::Move;
 use super::{App, Effect, Goal, LogRow, Overlay, Text, Typing};
 use crate::model::TransitionId;
+use crate::model::transition_names::TransitionNames;
 use crate::runtime::command::{BreakAt, Breaking, Command, OnError};
 use crate::runtime::record::Setter;
 use crate::ui::action::{self, Action};
@@ -12,7 +13,7 @@ use crate::ui::key::Key;
 use crate::ui::layout::Pane;
 use crate::ui::panes::detail;
 use crate::ui::tree::{self, Element};
-use crate::ui::view::{Kind, Path, is_own_doing, transition_text};
+use crate::ui::view::{Kind, Path, is_own_doing};
 
 impl App {
     /// At the state, or at the transition in the log or the detail, that is selected.
@@ -40,7 +41,7 @@ impl App {
 
     fn break_on(&self, id: TransitionId) -> Result<BreakAt, String> {
         let program = self.program().ok_or("there is no program")?;
-        Ok(BreakAt::Transition { transition: transition_text(program, id).into() })
+        Ok(BreakAt::Transition { transition: TransitionNames::of(program).name(id) })
     }
 
     /// The transition of a line of the log, as far as its program still runs.

@@ -14,7 +14,7 @@ use crate::ui::format;
 use crate::ui::graph::{Part, Point};
 use crate::ui::layout::Pane;
 use crate::ui::machine_graph;
-use crate::ui::view::{Which, name, transition_text};
+use crate::ui::view::{Which, name};
 
 pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
     let Some((program, machine)) = app.program().zip(app.machine()) else {
@@ -124,7 +124,7 @@ impl<'a> Brush<'a> {
             let by = self
                 .diagram
                 .transitions(self.program, self.machine, edge)
-                .find_map(|id| self.app.view().breaks_at_transition(&transition_text(self.program, id)));
+                .find_map(|id| self.app.view().breaks_at_transition(id));
             if let Some((by, at)) = by.zip(self.diagram.drawing.beside_label(edge)) {
                 mark_at(at, by, colour);
             }

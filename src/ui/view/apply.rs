@@ -19,7 +19,10 @@ impl View {
             What::Load(load) => self.load(load),
             What::Reject { findings } => self.reject(findings),
             What::Held(held) => self.hold(held),
-            What::Breakpoints { all } => self.breakpoints.clone_from(all),
+            What::Breakpoints { all } => {
+                self.breakpoints.clone_from(all);
+                self.find_transitions();
+            }
             What::Command { command } => self.command(command),
             What::Spawn { machine, by } => self.spawn(machine, by),
             What::Enter { state } => self.enter(state),

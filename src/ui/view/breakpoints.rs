@@ -1,10 +1,12 @@
 //! Where the program will pause, and who wants it.
 
+use std::collections::HashMap;
+
 use super::View;
-use crate::model::diff::transition_name;
-use crate::model::{Program, TransitionId};
+use crate::model::transition_names::transition_names;
+use crate::model::{MachineId, TransitionId};
 use crate::runtime::command::BreakAt;
-use crate::runtime::record::Setter;
+use crate::runtime::record::{Breakpoint, Setter};
 
 impl View {
     /// Who set a breakpoint; where both did, the person, who can clear it.
@@ -16,8 +18,24 @@ impl View {
         self.setter(|at| matches!(at, BreakAt::State { state } if **state == *path))
     }
 
-    pub fn breaks_at_transition(&self, text: &str) -> Option<Setter> {
-        self.setter(|at| matches!(at, BreakAt::Transition { transition } if **transition == *text))
+    pub fn breaks_at_transition(&self, transition: TransitionId) -> Option<Setter> {
+        self.transition_breaks.get(&transition).copied()
+    }
+
+    /// Finds the transitions among the breakpoints: after another program or other breakpoints have come.
+    pub(super) fn find_transitions(&mut self) {
+        self.transition_breaks.clear();
+        let mut wanted: HashMap<&str, Setter> = HashMap::new();
+        for Breakpoint { at, by } in &self.breakpoints {
+            if let BreakAt::Transition { transition } = at {
+                let known = wanted.entry(transition).or_insert(*by);
+                *known = if *by == Setter::Command { *by } else { *known };
+            }
+        }
+        let Some(program) = self.program.as_ref().filter(|_| !wanted.is_empty()) else { return };
+        let machines = (0..program.machines.len() as u32).map(MachineId);
+        let names = machines.flat_map(|machine| transition_names(program, machine));
+        self.transition_breaks.extend(names.filter_map(|(id, name)| Some((id, *wanted.get(&*name)?))));
     }
 
     fn setter(&self, is: impl Fn(&BreakAt) -> bool) -> Option<Setter> {
@@ -25,9 +43,4 @@ impl View {
         let first = there.next()?.by;
         if there.any(|breakpoint| breakpoint.by == Setter::Command) { Some(Setter::Command) } else { Some(first) }
     }
-}
-
-/// A transition as breakpoints and lists of changes name it: equal ones are told apart by their order.
-pub fn transition_text(program: &Program, id: TransitionId) -> String {
-    transition_name(program, id).to_string()
 }

@@ -22,7 +22,6 @@ use std::sync::Arc;
 
 use serde_json::Value;
 
-pub use breakpoints::transition_text;
 pub use bridge::{Bridge, Message};
 pub use edit::{Edit, Outcome, describe, describe_shortly};
 pub use history::{History, PERIOD_MS};
@@ -34,8 +33,8 @@ pub use renames::Renames;
 pub use variable::Variable;
 pub use world::World;
 
-use crate::model::Program;
-use crate::runtime::record::{Breakpoint, Finding, Held, Taken, Way};
+use crate::model::{Program, TransitionId};
+use crate::runtime::record::{Breakpoint, Finding, Held, Setter, Taken, Way};
 use crate::runtime::time::Time;
 use crate::ui::format::file_name;
 
@@ -81,6 +80,8 @@ pub struct View {
     pub held: Option<Held>,
     /// All there are.
     pub breakpoints: Vec<Breakpoint>,
+    /// Those among them that are at transitions of the program.
+    transition_breaks: BTreeMap<TransitionId, Setter>,
     pub world: Option<World>,
     /// How many times a program was taken over.
     pub loads: u64,
@@ -112,6 +113,7 @@ impl View {
             edit: None,
             held: None,
             breakpoints: Vec::new(),
+            transition_breaks: BTreeMap::new(),
             world: None,
             loads: 0,
         }

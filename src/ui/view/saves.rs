@@ -51,6 +51,7 @@ impl View {
         self.tuned.retain(|path, _| program.var(path).is_some());
         self.by_hand.retain(|path, _| program.var(path).is_some());
         self.program = Some(program.clone());
+        self.find_transitions();
     }
 
     /// Told again where it would do something else now: that is no news of a save.

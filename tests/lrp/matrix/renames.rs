@@ -109,6 +109,24 @@ fn other_edits_while_it_is_halfway() {
 }
 
 #[test]
+fn other_errors_while_it_is_halfway() {
+    let wrong = |tree: &Tree| {
+        let mut tree = tree.clone();
+        let (trigger, from, to) = (Trigger::After(100_000_000), "solo_off".into(), "nowhere".into());
+        tree.machine("solo").transitions.push(Transition { trigger, from, to, name: "lost".into() });
+        tree
+    };
+    each(|tree, named| {
+        let behind = halfway(tree, named);
+        vec![behind.clone(), wrong(&behind), behind.clone(), renamed(tree, named)]
+    });
+    each(|tree, named| {
+        let behind = halfway(tree, named);
+        vec![behind.clone(), wrong(&behind), wrong(&renamed(tree, named)), renamed(tree, named)]
+    });
+}
+
+#[test]
 fn several_at_once() {
     let tree = base::program();
     let mut after = tree.clone();

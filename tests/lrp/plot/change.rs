@@ -36,7 +36,7 @@ impl Plot {
     fn change_machine(&mut self, machine: &mut Machine, choices: &mut Choices, scope: &[String]) {
         let mut scope = scope.to_vec();
         scope.extend(machine.vars.iter().map(|var| var.name.clone()));
-        match choices.below(16) {
+        match choices.below(17) {
             0 => machine.vars.push(self.var(choices, &scope)),
             1 => drop(remove(&mut machine.vars, choices)),
             2 => machine.events.push(Var { name: self.name("e"), init: condition(choices, &scope) }),
@@ -50,6 +50,7 @@ impl Plot {
             12 => reorder(&mut machine.transitions, choices),
             13 => self.move_out(machine, choices),
             15 => break_at(&mut machine.transitions, choices),
+            16 => respace(&mut machine.transitions),
             14 if !machine.events.is_empty() => {
                 let index = choices.below(machine.events.len());
                 machine.events[index].init = condition(choices, &scope);
@@ -112,6 +113,16 @@ fn break_at(transitions: &mut [String], choices: &mut Choices) {
         *transition = match transition.strip_suffix(" (break))") {
             Some(without) => format!("{without})"),
             None => format!("{} (break))", &transition[..transition.len() - 1]),
+        };
+    }
+}
+
+/// White space in strings counts.
+fn respace(transitions: &mut [String]) {
+    for transition in transitions {
+        *transition = match transition.contains("'a b'") {
+            true => transition.replace("'a b'", "'a  b'"),
+            false => transition.replace("'a  b'", "'a b'"),
         };
     }
 }

@@ -20,7 +20,8 @@ pub fn expression(choices: &mut Choices, scope: &[String]) -> String {
 
 pub fn condition(choices: &mut Choices, scope: &[String]) -> String {
     let var = name(choices, scope);
-    match choices.below(6) {
+    match choices.below(7) {
+        6 => format!("{var} == 'a b'"),
         0 => format!("elapsed() >= {}", 100 * choices.below(6)),
         1 => format!("{var} > 2"),
         2 => format!("type({var}) == 'table'"),

@@ -4,6 +4,10 @@ use std::collections::BTreeSet;
 
 use lrp::lua::Checker;
 use lrp::syntax::lua_names::words;
+use proptest::prelude::*;
+
+use super::any_lua::piece;
+use crate::plot::Choices;
 
 fn free(code: &str) -> Vec<String> {
     let free = words(code).into_iter().filter(|word| word.is_free);
@@ -65,4 +69,46 @@ fn they_are_what_the_compiler_finds() {
         }
     }
     assert!(checked > 300, "only {checked} blocks");
+}
+
+/// Each free name gets one of its own: then the compiler has to find exactly those.
+fn told_apart(code: &str) -> (String, BTreeSet<String>) {
+    let (mut text, mut names, mut copied) = (String::new(), BTreeSet::new(), 0);
+    for word in words(code).into_iter().filter(|word| word.is_free) {
+        let name = format!("free{}", word.token.range.start);
+        text += &code[copied..word.token.range.start];
+        text += &name;
+        copied = word.token.range.end;
+        names.insert(name);
+    }
+    (text + &code[copied..], names)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 2000, failure_persistence: None, ..ProptestConfig::default() })]
+
+    #[test]
+    fn each_place_is_what_the_compiler_makes_of_it(numbers in prop::collection::vec(any::<u32>(), 10..150)) {
+        let code = piece(&mut Choices::new(&numbers));
+        if Checker::default().check(&code).is_ok() {
+            let (text, names) = told_apart(&code);
+            let facts = Checker::default().check(&text);
+            prop_assert!(facts.is_ok(), "{facts:?}\n{code}\n{text}");
+            let facts = facts.unwrap_or_default();
+            let found: BTreeSet<String> = facts.reads.into_iter().chain(facts.writes).map(|it| it.name).collect();
+            prop_assert_eq!(found, names, "{}\n{}", code, text);
+        }
+    }
+}
+
+#[test]
+fn most_random_pieces_are_lua() {
+    let mut random = 1u32;
+    let mut numbers = || {
+        random = random.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+        random >> 8
+    };
+    let is_lua = |numbers: Vec<u32>| Checker::default().check(&piece(&mut Choices::new(&numbers))).is_ok();
+    let fine = (0..100).filter(|_| is_lua((0..80).map(|_| numbers()).collect())).count();
+    assert!(fine > 40, "only {fine} of 100");
 }

@@ -89,7 +89,7 @@ fn visits(engine: &Engine, state: &str) -> (String, u64) {
 }
 
 /// A path after an edit that may have renamed things on it: the innermost of them says it all.
-fn called(load: &Load, path: &str) -> String {
+pub(super) fn called(load: &Load, path: &str) -> String {
     let renames = load.changes.iter().filter_map(|change| Some((&*change.path, &**change.to.as_ref()?)));
     let on_it = renames.filter_map(|(old, new)| Some((new, path.strip_prefix(old)?)));
     let on_it = on_it.filter(|(_, rest)| rest.is_empty() || rest.starts_with('/'));

@@ -1,6 +1,7 @@
 //! Random programs, random steps, inputs, commands and edits. Whatever happens: no panic, the picture folded from the
 //! records is the engine's, an edit leaves alone what it doesn't concern, and a trace read back tells the same.
 
+mod breaks;
 mod kept;
 
 use std::sync::Arc;
@@ -15,6 +16,7 @@ use lrp::ui::view::View;
 use proptest::prelude::*;
 use serde_json::json;
 
+use breaks::{AtTransitions, Watched};
 use kept::Kept;
 
 use crate::plot::{Choices, Plot};
@@ -25,17 +27,21 @@ struct Walk {
     mode: OnEdit,
     /// What taking the held save over would do, as last told.
     held: Option<Held>,
+    /// Conditions to pause on.
+    watched: Vec<Watched>,
 }
 
 pub fn walk(numbers: &[u32]) -> Result<(), String> {
     let choices = &mut Choices::new(numbers);
     let (mut plot, mut other) = (Plot::draw(choices), Plot::draw(choices));
-    let mut walk = Walk { stage: Stage::new(1, Duration::from_secs(5), Vec::new()), mode: OnEdit::Restart, held: None };
+    let stage = Stage::new(1, Duration::from_secs(5), Vec::new());
+    let mut walk = Walk { stage, mode: OnEdit::Restart, held: None, watched: Vec::new() };
     walk.stage.event(Event::Save(plot.text()));
     while !choices.is_empty() {
-        match choices.below(3) {
+        match choices.below(4) {
             0 => walk.tick(1 + choices.below(4))?,
             1 => walk.edit(&mut plot, &mut other, choices)?,
+            2 => walk.set_break(choices)?,
             _ => walk.happens(event(choices, walk.stage.engine()))?,
         }
     }
@@ -99,6 +105,30 @@ impl Walk {
         }
     }
 
+    /// On a condition with a variable, or at a transition.
+    fn set_break(&mut self, choices: &mut Choices) -> Result<(), String> {
+        let program = Arc::clone(self.stage.engine().program());
+        if choices.below(2) == 0 {
+            let command = breaks::set_at_transition(choices, &program);
+            return command.map_or(Ok(()), |command| self.happens(Event::Command(command)));
+        }
+        let Some(watched) = Watched::draw(choices, &program) else { return Ok(()) };
+        self.happens(Event::Command(watched.set()))?;
+        self.watched.push(watched);
+        Ok(())
+    }
+
+    /// Conditions that were set have their variables' names of now, whatever else is called so in them.
+    fn follow_conditions(&mut self, load: &Load) -> Result<(), String> {
+        let engine = self.stage.engine();
+        let program = engine.program();
+        self.watched = self.watched.iter().filter_map(|watched| watched.follow(load, program)).collect();
+        match self.watched.iter().find(|watched| !watched.is_set(engine)) {
+            Some(lost) => Err(format!("lost {lost:?} of {:?}", engine.breakpoints())),
+            None => Ok(()),
+        }
+    }
+
     fn tick(&mut self, times: usize) -> Result<(), String> {
         let known = self.stage.records.len();
         (0..times).for_each(|_| self.stage.tick());
@@ -107,9 +137,17 @@ impl Walk {
 
     fn happens(&mut self, event: Event) -> Result<(), String> {
         let before = Kept::of(&self.stage);
+        let at_transitions = AtTransitions::of(self.stage.engine());
+        self.watched.retain(|watched| watched.is_set(self.stage.engine()));
         let known = self.stage.records.len();
         self.stage.event(event.clone());
         let after = Kept::of(&self.stage);
+        let told = self.stage.records[known..].to_vec();
+        if let Some(load) = loaded(&told) {
+            let wrong = |wrong: String| format!("{wrong} by {event:?}\n{}", lines(&told));
+            at_transitions.check(&AtTransitions::of(self.stage.engine()), load).map_err(wrong)?;
+            self.follow_conditions(load).map_err(wrong)?;
+        }
         let fresh = &self.stage.records[known..];
         let wrong = |wrong: String| format!("{wrong} by {event:?}\n{}", lines(fresh));
         let load = loaded(fresh);

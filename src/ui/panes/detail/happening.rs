@@ -2,7 +2,7 @@
 
 use super::{Page, Tone};
 use crate::model::Trigger;
-use crate::model::diff::trigger_text;
+use crate::model::transition_names::trigger_text;
 use crate::syntax::Source;
 use crate::ui::app::LogRow;
 use crate::ui::format;

@@ -1,14 +1,14 @@
 //! The ways out of a state, each with what its guard came to: why it is not taken. A row keeps its place whatever is found.
 
 use super::{Lead, Line, Page, Tone, place};
-use crate::model::diff::trigger_text;
 use crate::model::reads::readings;
+use crate::model::transition_names::trigger_text;
 use crate::model::ways::{guard_block, ways_out};
 use crate::model::{Program, Sources, StateId, TransitionId, TransitionKind, Trigger};
 use crate::runtime::record::{Answer, Way};
 use crate::ui::format;
 use crate::ui::panes::breakpoints::mark;
-use crate::ui::view::{Gravity, transition_text};
+use crate::ui::view::Gravity;
 
 impl Page<'_> {
     pub(super) fn ways_out(&mut self, program: &Program, state: StateId, heading: &str) {
@@ -33,7 +33,7 @@ impl Page<'_> {
         let name = transition.name.as_ref().map_or(String::new(), |name| format!("  {name}"));
         let text = format!("→ {target}{:room$}  {}{name}", "", cause(program, id));
         let place = place(program, transition.span);
-        let mark = self.app.view().breaks_at_transition(&transition_text(program, id)).map_or(" ", mark);
+        let mark = self.app.view().breaks_at_transition(id).map_or(" ", mark);
         let (answer, tone) = found.map_or((String::new(), Tone::Aside), |found| self.answer(program, id, found));
         let lead = Lead { mark, text: answer, tone };
         self.lines.push(Line { text, place, transition: Some(id), tone: Tone::Text, lead });
