@@ -70,8 +70,7 @@ impl Heard {
             let settled = Settled::default();
             let compiler = compiler().with_files(settled.clone());
             let (running, beside, required) = Default::default();
-            let desk =
-                Desk { file, source: first, compiler, settled, watch, commands, running, beside, required };
+            let desk = Desk { file, source: first, compiler, settled, watch, commands, running, beside, required };
             desk.work(&inbox);
         })?;
         Ok(Edits { notes: self.notes, thread: Some(thread) })
