@@ -25,17 +25,28 @@ pub fn serves(running: &Program, program: &Program, without: &Program) -> bool {
 }
 
 /// The one element that the one missing name of a program could mean, going by what it meant in the program that runs.
+/// Where an export is what still says the old name, the new one is missing elsewhere as well.
 pub fn propose(running: &Program, program: &Program) -> Option<Alias> {
-    let (kind, name) = only_missing(program)?;
+    let (kind, missing) = missing(program)?;
     let matching = Matching::of(running, program);
+    missing.iter().find_map(|&name| {
+        let means = meaning(running, program, &matching, kind, name)?;
+        let is_it = |other: &str| other == name || *other == **program.name(means);
+        missing.iter().all(|other| is_it(other)).then(|| Alias { name: name.into(), means })
+    })
+}
+
+fn meaning(running: &Program, program: &Program, matching: &Matching, kind: Kind, name: &str) -> Option<ElementId> {
     let renamed = running.alias(kind, name);
-    let named = running.all(kind).filter(|&was| **running.name(was) == *name && matching.now(was).is_none());
+    // An export left behind doesn't keep a machine from being matched as renamed.
+    let has_it = |now: ElementId| **program.name(now) == *name;
+    let named = running.all(kind).filter(|&was| **running.name(was) == *name && !matching.now(was).is_some_and(has_it));
     let mut found = named.chain(renamed).filter_map(|was| match matching.now(was) {
         Some(now) => Some(now),
-        None => twin(running, was, program, &matching, name),
+        None => twin(running, was, program, matching, name),
     });
     let means = found.next()?;
-    found.next().is_none().then(|| Alias { name: name.into(), means })
+    found.next().is_none().then_some(means)
 }
 
 /// Whether a program that was resolved with an alias shows it to be a rename: all names mean something now.
@@ -47,14 +58,21 @@ pub fn holds(running: &Program, program: &Program) -> bool {
     was.is_some_and(had_it) && Matching::unresolved(program).is_empty()
 }
 
-/// What the errors of a program are about, where all of them are about one name.
-fn only_missing(program: &Program) -> Option<(Kind, &str)> {
-    let mut missing = program.findings.iter().filter(|finding| finding.is_error()).map(|finding| {
+/// The names that the errors of a program are about, where all of them are about names of one kind, and two at most.
+fn missing(program: &Program) -> Option<(Kind, Vec<&str>)> {
+    let mut of_kind = None;
+    let mut names = Vec::new();
+    for finding in program.findings.iter().filter(|finding| finding.is_error()) {
+        let kind = Kind::missing(finding.code)?;
+        if *of_kind.get_or_insert(kind) != kind {
+            return None;
+        }
         let name = program.source(finding.span).slice(finding.span);
-        Kind::missing(finding.code).map(|kind| (kind, name))
-    });
-    let first = missing.next()??;
-    missing.all(|other| other == Some(first)).then_some(first)
+        if !names.contains(&name) {
+            names.push(name);
+        }
+    }
+    (names.len() <= 2).then_some((of_kind?, names))
 }
 
 /// The one new element beside an element that is gone with the same text, which may still use the old name.

@@ -2,10 +2,14 @@
 
 use std::sync::Arc;
 
+use super::element::Alias;
 use super::ids::MachineId;
 use super::resolve::Resolver;
 use crate::syntax::ast::{self, Form, Tree};
 use crate::syntax::{Code, Diagnostic, FileId, Source, Span};
+
+/// How many files a program may have, and how many Lua files its blocks may require by literal names.
+pub const MOST: usize = 1000;
 
 /// A file that was read.
 pub struct File<'t> {
@@ -94,10 +98,11 @@ impl Resolver<'_> {
         &self.files[file.0 as usize]
     }
 
-    /// The bare name of one of the program's own machines or of an exported one; other files' own begin with the file.
+    /// The machine that is declared next: the bare name of one of the program's own machines or of an exported one; other files' own begin with the file.
     pub(super) fn top_path(&self, machine: &ast::Machine) -> Arc<str> {
         let (name, file) = (&machine.name.text, machine.span.file);
-        let exported = || self.file(file).exports().any(|export| export.text == *name);
+        let id = MachineId(self.program.machines.len() as u32);
+        let exported = || self.file(file).exports().any(|export| export.text == *name || self.was_called(id, export));
         let taken = || self.program.tops.iter().any(|&top| self.program[top].path == *name);
         match file == FileId(0) || exported() && !taken() {
             true => name.clone(),
@@ -142,8 +147,9 @@ impl Resolver<'_> {
                 for export in file.exports() {
                     let own = self.program.spawnable[index].iter();
                     let others = file.imports().map(|(_, imported)| exported[imported.0 as usize].clone());
-                    let named = |machine: &MachineId| self.program[*machine].name == export.text;
-                    let found = own.copied().chain(others.flatten()).find(named);
+                    let known: Vec<MachineId> = own.copied().chain(others.flatten()).collect();
+                    let named = known.iter().find(|&&it| self.program[it].name == export.text);
+                    let found = named.or_else(|| known.iter().find(|&&it| self.was_called(it, export))).copied();
                     if let Some(machine) = found.filter(|it| !exported[index].contains(it)) {
                         exported[index].push(machine);
                         grown = true;
@@ -152,6 +158,12 @@ impl Resolver<'_> {
             }
         }
         exported
+    }
+
+    /// Whether an export still names a machine as it was called before it was renamed.
+    fn was_called(&self, machine: MachineId, export: &ast::Name) -> bool {
+        let named = |alias: &Alias| alias.means == machine.into() && alias.name == export.text;
+        self.alias.as_ref().is_some_and(named)
     }
 
     fn check_exports(&mut self, exported: &[Vec<MachineId>]) {

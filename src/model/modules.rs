@@ -3,6 +3,7 @@
 use std::collections::BTreeSet;
 use std::ops::Range;
 
+use super::files::MOST;
 use super::ids::ModuleId;
 use super::program::{Module, Program};
 use crate::syntax::lua_tokens::{Token, TokenKind, tokens};
@@ -86,6 +87,9 @@ fn module(
 ) -> Result<ModuleId, String> {
     if let Some(known) = program.modules.iter().position(|module| *module.name == *name) {
         return Ok(ModuleId(known as u32));
+    }
+    if program.modules.len() == MOST {
+        return Err(format!("`{name}` is not taken for part of the program: {MOST} Lua files are required already"));
     }
     let source = find(name)?;
     let id = ModuleId(program.modules.len() as u32);

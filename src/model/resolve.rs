@@ -31,13 +31,13 @@ pub fn resolve(tree: &Tree, source: Source, robots: &[Robot], checker: &mut Chec
 /// found by another name as well.
 pub fn resolve_files(files: &[File], robots: &[Robot], checker: &mut Checker, alias: Option<Alias>) -> Program {
     let order = precedence(files);
-    let mut resolver = Resolver { files, ..Resolver::default() };
+    let mut resolver = Resolver { files, alias, ..Resolver::default() };
     resolver.program.sources = files.iter().map(|file| file.source.clone()).collect();
     resolver.program.spawnable = vec![Vec::new(); files.len()];
     resolver.declare(&order);
+    resolver.program.alias = resolver.alias.clone();
     resolver.share_machines();
     resolver.bridges(&order, robots, checker);
-    resolver.program.alias = alias;
     resolver.link();
     let mut program = resolver.program;
     program.findings = resolver.diagnostics;
@@ -58,6 +58,8 @@ pub fn resolve_files(files: &[File], robots: &[Robot], checker: &mut Checker, al
 #[derive(Default)]
 pub(super) struct Resolver<'t> {
     pub(super) files: &'t [File<'t>],
+    /// The program's only once all is declared: an id of it means nothing before.
+    pub(super) alias: Option<Alias>,
     pub(super) program: Program,
     pub(super) diagnostics: Vec<Diagnostic>,
     pub(super) machines: Vec<(MachineId, &'t ast::Machine)>,

@@ -12,6 +12,7 @@ use std::thread::{Builder, JoinHandle};
 use super::compile::{Compiler, Rejected};
 use super::engine_thread::{Commands, Library};
 use super::loader::Unreadable;
+use super::settled::Settled;
 use super::watch::{Saved, Watch, Watched};
 use super::{findings, loader, modules, robots};
 use crate::model::{Edit, Program};
@@ -28,7 +29,7 @@ pub struct Edits {
 enum Note {
     Saved(Saved),
     /// A block has read this Lua file, with this text: another one is news, however soon it comes.
-    Required(Watched),
+    Required(PathBuf, Arc<str>),
     End,
 }
 
@@ -48,12 +49,12 @@ impl Heard {
     pub fn library(&self, folder: PathBuf) -> Library {
         let notes = self.notes.clone();
         modules::library(folder, move |path, text| {
-            let known = Watched { path: path.to_path_buf(), text: Some(text.into()) };
-            drop(notes.send(Note::Required(known)));
+            drop(notes.send(Note::Required(path.to_path_buf(), text.into())));
         })
     }
 
-    /// Loads the first text of `file`, then every save of it; the compiler is made on the thread that uses it. Fails only where no thread can be started.
+    /// Loads the first text of `file`, then every save of it; the compiler is made on the thread that uses it, and reads
+    /// files as they last settled. Fails only where no thread can be started.
     pub fn watch(
         self,
         file: PathBuf,
@@ -66,10 +67,10 @@ impl Heard {
         let watch = Watch::new([known], move |saved| drop(saves.send(Note::Saved(saved))))?;
         let inbox = self.inbox;
         let thread = Builder::new().name("edits".to_string()).spawn(move || {
-            let compiler = compiler();
-            let (beside, required) = (BTreeSet::new(), BTreeMap::new());
-            let desk =
-                Desk { file, source: first, compiler, watch, commands, running: Arc::default(), beside, required };
+            let settled = Settled::default();
+            let compiler = compiler().with_files(settled.clone());
+            let (running, beside, required) = Default::default();
+            let desk = Desk { file, source: first, compiler, settled, watch, commands, running, beside, required };
             desk.work(&inbox);
         })?;
         Ok(Edits { notes: self.notes, thread: Some(thread) })
@@ -92,14 +93,16 @@ struct Desk {
     /// Its text as last saved.
     source: Source,
     compiler: Compiler,
+    /// What the compiler reads.
+    settled: Settled,
     watch: Watch,
     commands: Commands,
     /// What ran at the last save: held until the next one, so that it is dropped here and not on the engine's thread.
     running: Arc<Program>,
-    /// Files that the robots read.
-    beside: BTreeSet<PathBuf>,
-    /// Lua files that blocks have read while they ran.
-    required: BTreeMap<PathBuf, Watched>,
+    /// Files that the robots read, and what was in them when they were last looked at.
+    beside: BTreeMap<PathBuf, Option<Arc<str>>>,
+    /// Lua files that blocks have read while they ran, as they were read or saved last.
+    required: BTreeMap<PathBuf, Arc<str>>,
 }
 
 impl Desk {
@@ -108,8 +111,8 @@ impl Desk {
         for note in inbox {
             match note {
                 Note::Saved(saved) => self.saved(saved),
-                Note::Required(known) => {
-                    self.required.insert(known.path.clone(), known);
+                Note::Required(path, text) => {
+                    self.required.insert(path, text);
                     self.watch_all();
                 }
                 Note::End => return,
@@ -119,14 +122,16 @@ impl Desk {
 
     fn saved(&mut self, saved: Saved) {
         match saved {
+            // The watch may have heard of a text after it told of the next one, and tells that again.
+            Saved::Text { path, text } if self.known(&path) == Some(Some(&text)) => self.settled.put(path, text),
             Saved::Text { path, text } if path == self.file => {
                 self.source = Source::new(path.display().to_string(), text);
                 self.load();
             }
-            // Another file's save has brought it in already.
-            Saved::Text { path, text } if self.taken(&path).is_some_and(|taken| taken.as_ref() == Some(&text)) => {}
-            Saved::Text { path, .. } if self.taken(&path).is_some() => self.load(),
-            Saved::Back { path } if self.taken(&path) == Some(None) => self.load(),
+            Saved::Text { path, text } if self.taken(&path).is_some() => {
+                self.settled.put(path, text);
+                self.load();
+            }
             saved => {
                 let told = self.told(saved);
                 self.commands.send(told);
@@ -135,9 +140,16 @@ impl Desk {
     }
 
     /// The text with which a file is part of the program, none while it can't be read; nothing for other files.
-    fn taken(&self, path: &Path) -> Option<Option<Arc<str>>> {
+    fn taken(&self, path: &Path) -> Option<Option<&Arc<str>>> {
         let reached = self.compiler.reached().iter().find(|reached| reached.path == path)?;
-        Some(reached.text.clone())
+        Some(reached.text.as_ref())
+    }
+
+    /// The text of a watched file that all that was done so far goes by.
+    fn known(&self, path: &Path) -> Option<Option<&Arc<str>>> {
+        let own = (path == self.file).then_some(Some(&self.source.text));
+        let beside = || self.beside.get(path).map(Option::as_ref);
+        own.or_else(|| self.taken(path)).or_else(beside).or_else(|| self.required.get(path).map(Some))
     }
 
     fn load(&mut self) {
@@ -151,48 +163,57 @@ impl Desk {
                 Command::Reject { findings: findings::errors_first(&diagnostics, &sources) }
             }
         };
+        self.settled.take(self.compiler.reached());
         self.watch_all();
         self.commands.send(command);
     }
 
-    fn files_of_robots(&self, program: &Program) -> BTreeSet<PathBuf> {
+    fn files_of_robots(&self, program: &Program) -> BTreeMap<PathBuf, Option<Arc<str>>> {
         let folder = super::live::folder(&self.file);
-        program.bridges.iter().flat_map(|bridge| robots::files(bridge, &folder)).collect()
+        let text = |path: &PathBuf| match self.beside.get(path) {
+            Some(known) => known.clone(),
+            // Without a text to compare with, the next one counts as new: at worst it is taken over again.
+            None => loader::read_file(path).ok().map(|source| source.text),
+        };
+        let files = program.bridges.iter().flat_map(|bridge| robots::files(bridge, &folder));
+        files.map(|path| (path.clone(), text(&path))).collect()
     }
 
     fn watch_all(&self) {
-        let watched = |path: &PathBuf| {
-            // Without a text to compare with, the next one counts as new: at worst it is taken over again.
-            let text = loader::read_file(path).ok().map(|source| source.text);
-            Watched { path: path.clone(), text }
-        };
-        let read = std::iter::once(&self.file).chain(&self.beside).map(watched);
-        let reached = self.compiler.reached().iter().cloned();
-        let mut all: BTreeMap<PathBuf, Watched> = BTreeMap::new();
-        for file in read.chain(reached).chain(self.required.values().cloned()) {
-            all.entry(file.path.clone()).or_insert(file);
-        }
-        // Of one that couldn't be read any text is news, also the one known from before.
-        let unread = |path: &PathBuf| self.taken(path) == Some(None);
-        if all.keys().any(unread) {
-            self.watch.set_paths(all.values().filter(|file| !unread(&file.path)).cloned());
-        }
-        self.watch.set_paths(all.into_values());
+        let reached = self.compiler.reached().iter().map(|file| &file.path);
+        let paths = std::iter::once(&self.file).chain(reached).chain(self.beside.keys()).chain(self.required.keys());
+        let all: BTreeSet<&PathBuf> = paths.collect();
+        let known = |path: &PathBuf| self.known(path).flatten().cloned();
+        self.watch.set_paths(all.into_iter().map(|path| Watched { path: path.clone(), text: known(path) }));
     }
 
     fn told(&mut self, saved: Saved) -> Command {
         match saved {
             Saved::Text { path, text } => self.beside_changed(&path, text),
-            Saved::Back { .. } => Command::Reject { findings: Vec::new() },
-            Saved::Missing { path } => rejected(of_file(&path, "the file is gone; the program goes on".to_string())),
-            Saved::Unreadable { path, why } => rejected(unreadable(&path, &why)),
+            Saved::Back { path } => {
+                if let Some(text) = self.taken(&path).flatten().cloned() {
+                    self.settled.put(path, text);
+                }
+                Command::Reject { findings: Vec::new() }
+            }
+            Saved::Missing { path } => {
+                self.settled.forget(&path);
+                rejected(of_file(&path, "the file is gone; the program goes on".to_string()))
+            }
+            Saved::Unreadable { path, why } => {
+                self.settled.forget(&path);
+                rejected(unreadable(&path, &why))
+            }
         }
     }
 
     /// A required file that isn't Lua any more is not taken over, just as a program that can't be read isn't.
     fn beside_changed(&mut self, path: &Path, text: Arc<str>) -> Command {
+        if let Some(known) = self.beside.get_mut(path) {
+            *known = Some(text.clone());
+        }
+        let required = self.required.get_mut(path).map(|known| *known = text.clone()).is_some();
         let source = Source::new(path.display().to_string(), text);
-        let required = self.required.contains_key(path);
         let mistake = if required { self.compiler.check_lua(&source, FileId(0)) } else { None };
         match mistake {
             Some(mistake) => Command::Reject { findings: findings::errors_first(&[mistake], &[source]) },

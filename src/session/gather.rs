@@ -8,7 +8,7 @@ use super::files::{Files, plain, relative};
 use super::live::folder;
 use super::loader::Unreadable;
 use super::watch::Watched;
-use crate::model::File;
+use crate::model::{File, files};
 use crate::syntax::ast::{self, Form};
 use crate::syntax::{Code, Diagnostic, FileId, Parsed, Source, parse};
 
@@ -30,6 +30,12 @@ impl Gathered {
             qualifier: self.qualifier.clone(),
         }
     }
+}
+
+/// The imports of a file that are still to be followed.
+struct Imports {
+    by: FileId,
+    left: std::vec::IntoIter<ast::Name>,
 }
 
 pub struct Gathering<'a> {
@@ -60,24 +66,38 @@ impl<'a> Gathering<'a> {
             reached: Vec::new(),
             diagnostics: Vec::new(),
         };
-        gathering.add(source, canonical);
+        gathering.gather(source, canonical);
         gathering
     }
 
-    fn add(&mut self, source: Source, canonical: PathBuf) -> FileId {
-        let id = FileId(self.gathered.len() as u16);
-        let parsed = self.parsed(&source, id);
-        let folder = folder(Path::new(&*source.name));
-        let qualifier = qualifier(&self.root, &canonical);
-        self.known.insert(canonical, id);
-        self.gathered.push(Gathered { source, parsed: Rc::clone(&parsed), imports: Vec::new(), qualifier });
-        for form in &parsed.tree.forms {
-            if let Form::Import(import) = form {
-                let imported = self.follow(&import.file, id, &folder);
-                self.gathered[id.0 as usize].imports.push(imported);
+    /// Depth first, in the order written.
+    fn gather(&mut self, source: Source, canonical: PathBuf) {
+        let mut open = vec![self.add(source, canonical)];
+        while let Some(Imports { by, left }) = open.last_mut() {
+            let by = *by;
+            match left.next() {
+                None => drop(open.pop()),
+                Some(import) => {
+                    let (imported, its_own) = self.follow(&import, by);
+                    self.gathered[by.0 as usize].imports.push(imported);
+                    open.extend(its_own);
+                }
             }
         }
-        id
+    }
+
+    fn add(&mut self, source: Source, canonical: PathBuf) -> Imports {
+        let by = FileId(self.gathered.len() as u16);
+        let parsed = self.parsed(&source, by);
+        let imports = parsed.tree.forms.iter().filter_map(|form| match form {
+            Form::Import(import) => Some(import.file.clone()),
+            _ => None,
+        });
+        let left = imports.collect::<Vec<_>>().into_iter();
+        let qualifier = qualifier(&self.root, &canonical);
+        self.known.insert(canonical, by);
+        self.gathered.push(Gathered { source, parsed, imports: Vec::new(), qualifier });
+        Imports { by, left }
     }
 
     fn parsed(&self, source: &Source, id: FileId) -> Rc<Parsed> {
@@ -85,13 +105,19 @@ impl<'a> Gathering<'a> {
         before.map_or_else(|| Rc::new(parse(source, id)), |before| Rc::clone(&before.parsed))
     }
 
-    fn follow(&mut self, import: &ast::Name, by: FileId, folder: &Path) -> Option<FileId> {
-        let path = folder.join(&*import.text);
+    /// The file an import leads to, and what that imports in turn where it is new.
+    fn follow(&mut self, import: &ast::Name, by: FileId) -> (Option<FileId>, Option<Imports>) {
+        let by = self.gathered[by.0 as usize].source.name.clone();
+        let path = folder(Path::new(&*by)).join(&*import.text);
         let canonical = self.files.canonical(&path);
         // Not so where a folder is a link.
         let path = Some(plain(&path)).filter(|plain| self.files.canonical(plain) == canonical).unwrap_or(path);
         if let Some(&known) = self.known.get(&canonical) {
-            return Some(known);
+            return (Some(known), None);
+        }
+        if self.gathered.len() == files::MOST {
+            self.too_many(import);
+            return (None, None);
         }
         let read = self.files.read(&path);
         let text = read.as_ref().ok().map(|source| source.text.clone());
@@ -99,13 +125,25 @@ impl<'a> Gathering<'a> {
             self.reached.push(Watched { path, text });
         }
         match read {
-            Ok(source) => Some(self.add(source, canonical)),
+            Ok(source) => {
+                let imports = self.add(source, canonical);
+                (Some(imports.by), Some(imports))
+            }
             Err(why) => {
-                let by = &self.gathered[by.0 as usize].source.name;
-                self.diagnostics.push(unreadable(import, by, &why));
-                None
+                self.diagnostics.push(unreadable(import, &by, &why));
+                (None, None)
             }
         }
+    }
+
+    /// Said once: what keeps the first from being read keeps all others.
+    fn too_many(&mut self, import: &ast::Name) {
+        if self.diagnostics.iter().any(|it| it.code == Code::TooManyFiles) {
+            return;
+        }
+        let message = format!("this would be one file more than the {} that a program may have", files::MOST);
+        let help = "check that it imports what was meant, or put several of the files into one";
+        self.diagnostics.push(Diagnostic::error(Code::TooManyFiles, import.span, message).help(help));
     }
 }
 

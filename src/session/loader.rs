@@ -146,7 +146,23 @@ fn nearest_file(folder: &Path, path: &Path) -> Option<String> {
         .filter_map(|entry| entry.file_name().into_string().ok())
         .collect();
     names.sort();
-    nearest(wanted, names.iter().map(String::as_str)).map(str::to_owned)
+    nearest_name(wanted, &names.iter().map(String::as_str).collect::<Vec<_>>()).map(str::to_owned)
+}
+
+/// Of some names of files the one that may have been meant: either the extension is mistyped or what stands before it,
+/// and the other part is no likeness.
+pub fn nearest_name<'a>(wanted: &str, names: &[&'a str]) -> Option<&'a str> {
+    let Some((stem, extension)) = wanted.rsplit_once('.') else {
+        return nearest(wanted, names.iter().copied());
+    };
+    let parts = || names.iter().filter_map(|name| name.rsplit_once('.'));
+    let stems = parts().filter(|part| part.1 == extension).map(|part| part.0);
+    let extensions = parts().filter(|part| part.0 == stem).map(|part| part.1);
+    let meant = match nearest(stem, stems) {
+        Some(near) => (near, extension),
+        None => (stem, nearest(extension, extensions)?),
+    };
+    names.iter().copied().find(|name| name.rsplit_once('.') == Some(meant))
 }
 
 /// The folder a path lies in; a bare name lies in the current one.

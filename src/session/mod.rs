@@ -13,6 +13,7 @@ pub mod loader;
 pub mod modules;
 pub mod pace;
 pub mod robots;
+pub mod settled;
 pub mod signals;
 pub mod test_runner;
 pub mod trace;

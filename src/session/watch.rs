@@ -66,7 +66,7 @@ impl Watch {
         Ok(Watch { notes, thread: Some(thread) })
     }
 
-    /// Watches these files from now on. One that was watched before keeps what is known of it, whatever its text here.
+    /// Watches these files from now on. Another text than the one given is news, whatever was told before.
     pub fn set_paths(&self, files: impl IntoIterator<Item = Watched>) {
         // The thread listens for as long as this lives, unless its callback panicked.
         let _ = self.notes.send(Note::Files(files.into_iter().collect()));
@@ -168,7 +168,10 @@ impl<F: Fn(Saved)> Watching<F> {
         let now = self.now();
         let mut known = std::mem::take(&mut self.files);
         for Watched { path, text } in files {
-            let file = known.remove(&path).unwrap_or_else(|| Settling::new(text, now));
+            let file = match known.remove(&path) {
+                Some(file) => file.knowing(text),
+                None => Settling::new(text, now),
+            };
             self.files.insert(path, file);
         }
         self.poll();

@@ -109,6 +109,7 @@ codes! {
     UnknownField "unknown-field",
     // Other files.
     UnreadableImport "unreadable-import",
+    TooManyFiles "too-many-files",
     ImportCycle "import-cycle",
     NothingExported "nothing-exported",
     UnknownModule "unknown-module",

@@ -2,7 +2,7 @@
 
 /// The known word fewest edits away, where an edit inserts, removes or replaces a character or swaps two neighbours.
 /// None where even the nearest differs in more than a third of its characters (one edit is always allowed, but not for
-/// a single letter); capitals don't count. Of equally near ones, the first.
+/// a single letter, and of two letters only their order may differ); capitals don't count. Of equally near ones, the first.
 pub fn nearest<'a>(wanted: &str, known: impl IntoIterator<Item = &'a str>) -> Option<&'a str> {
     let folded: Vec<char> = fold(wanted);
     let mut best: Option<(usize, &str)> = None;
@@ -14,6 +14,9 @@ pub fn nearest<'a>(wanted: &str, known: impl IntoIterator<Item = &'a str>) -> Op
         let longer = folded.len().max(candidate.len());
         let limit = best.map_or(cut_off(longer), |(least, _)| cut_off(longer).min(least.saturating_sub(1)));
         if folded.len().abs_diff(candidate.len()) > limit || folded.len().min(candidate.len()) <= limit {
+            continue;
+        }
+        if longer == 2 && !same_letters(&folded, &candidate) {
             continue;
         }
         let distance = distance(&folded, &candidate);
@@ -29,6 +32,11 @@ const LONGEST: usize = 64;
 
 fn fold(word: &str) -> Vec<char> {
     word.chars().take(LONGEST).flat_map(char::to_lowercase).collect()
+}
+
+/// Of two pairs.
+fn same_letters(a: &[char], b: &[char]) -> bool {
+    a == b || a.iter().eq(b.iter().rev())
 }
 
 fn cut_off(length: usize) -> usize {

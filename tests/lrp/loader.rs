@@ -3,7 +3,7 @@
 use std::fs;
 use std::path::Path;
 
-use lrp::session::loader::{LIMIT, Unreadable, read, read_file};
+use lrp::session::loader::{LIMIT, Unreadable, nearest_name, read, read_file};
 
 fn folder(files: &[(&str, &[u8])]) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
@@ -34,6 +34,25 @@ fn a_missing_file_suggests_its_neighbour() {
     let message = complaint(dir.path(), "behavior.lrp");
     assert_eq!(message, "behavior.lrp: no such file; did you mean `behaviour.lrp`?");
     assert_eq!(complaint(dir.path(), "zzzzzzzz.txt"), "zzzzzzzz.txt: no such file");
+}
+
+#[test]
+fn the_extension_is_no_likeness() {
+    let names = ["a.lrp", "arm.lrp", "walker.lua"];
+    let cases = [
+        ("nn.lrp", None),
+        ("b.lrp", None),
+        ("amr.lrp", Some("arm.lrp")),
+        ("arm.lpr", Some("arm.lrp")),
+        ("walker.lrp", None),
+        ("wakler.lua", Some("walker.lua")),
+        ("arms.lua", None),
+        ("walker.l", None),
+        ("walkerlua", Some("walker.lua")),
+    ];
+    for (wanted, expected) in cases {
+        assert_eq!(nearest_name(wanted, &names), expected, "{wanted}");
+    }
 }
 
 #[test]

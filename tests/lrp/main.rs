@@ -14,6 +14,7 @@ mod edits_on_screen;
 mod found;
 mod frames;
 mod graph;
+mod half_written;
 mod imports;
 mod isolation;
 mod keys;

@@ -174,3 +174,27 @@ fn of_a_file_without_a_text_only_a_text_is_news() {
     assert_eq!(file.found(missing(), ms(1020)), None);
     assert_eq!(file.found(Ok(text("new")), ms(2000)), Some(News::Text(text("new"))));
 }
+
+#[test]
+fn what_the_caller_took_is_known_from_then_on() {
+    let mut file = file().knowing(Some(text("half")));
+    assert!(file.is_due(SETTLE));
+    assert_eq!(file.found(Ok(text("old")), ms(100)), Some(News::Text(text("old"))));
+    let file = file.knowing(Some(text("old")));
+    assert_eq!(file.due(), None, "this is known");
+    let mut file = file.knowing(None);
+    assert_eq!(file.found(missing(), ms(200)), None);
+    assert_eq!(file.found(missing(), ms(1200)), None, "and so is its absence");
+    let mut file = file.knowing(Some(text("new")));
+    assert_eq!(file.found(Ok(text("new")), ms(1300)), None);
+}
+
+#[test]
+fn one_that_was_missed_is_welcomed_back_also_with_a_text_taken_meanwhile() {
+    let mut file = file();
+    assert_eq!(file.found(missing(), ms(100)), None);
+    assert_eq!(file.found(missing(), ms(1100)), Some(News::Missing));
+    let mut file = file.knowing(Some(text("half")));
+    assert_eq!(file.found(Ok(text("half")), ms(1200)), Some(News::Back));
+    assert_eq!(file.found(Ok(text("old")), ms(1300)), Some(News::Text(text("old"))));
+}

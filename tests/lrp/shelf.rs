@@ -7,10 +7,9 @@ use std::path::{Path, PathBuf};
 use std::rc::Rc;
 
 use lrp::session::files::{Files, plain};
-use lrp::session::loader::Unreadable;
+use lrp::session::loader::{Unreadable, nearest_name};
 use lrp::session::modules;
 use lrp::syntax::Source;
-use lrp::syntax::nearest::nearest;
 
 /// Clones share the files.
 #[derive(Clone, Default)]
@@ -49,7 +48,7 @@ impl Files for Shelf {
                 let path = self.canonical(path);
                 let beside = files.keys().filter(|it| it.parent() == path.parent());
                 let names: Vec<&str> = beside.filter_map(|it| it.file_name()?.to_str()).collect();
-                let near = nearest(path.file_name().and_then(|it| it.to_str()).expect("a name"), names);
+                let near = nearest_name(path.file_name().and_then(|it| it.to_str()).expect("a name"), &names);
                 Err(Unreadable::Missing { nearest: near.map(str::to_owned), path })
             }
         }

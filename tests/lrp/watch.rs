@@ -213,10 +213,27 @@ fn the_set_of_files_may_change() {
     assert_eq!(next(&told), text(&other, "imported"));
     fs::write(&desk.path, "new").unwrap();
     assert_eq!(next(&told), text(&desk.path, "new"));
-    watch.set_paths([Watched { path: other.clone(), text: None }]);
+    watch.set_paths([Watched { path: other.clone(), text: Some("imported".into()) }]);
     fs::write(&desk.path, "no longer watched").unwrap();
     fs::write(&other, "still watched").unwrap();
     assert_eq!(next(&told), text(&other, "still watched"));
+}
+
+#[test]
+fn another_text_than_the_one_known_is_told_whatever_was_told_before() {
+    let desk = Desk::new();
+    let (watch, told) = watch([desk.known()]);
+    fs::write(&desk.path, "new").unwrap();
+    assert_eq!(next(&told), text(&desk.path, "new"));
+    for known in ["half", "another half"] {
+        watch.set_paths([Watched { path: desk.path.clone(), text: Some(known.into()) }]);
+        assert_eq!(next(&told), text(&desk.path, "new"));
+    }
+    watch.set_paths([Watched { path: desk.path.clone(), text: None }]);
+    assert_eq!(next(&told), text(&desk.path, "new"));
+    watch.set_paths([Watched { path: desk.path.clone(), text: Some("new".into()) }]);
+    fs::write(&desk.path, "newer").unwrap();
+    assert_eq!(next(&told), text(&desk.path, "newer"));
 }
 
 #[test]

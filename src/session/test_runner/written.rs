@@ -50,7 +50,7 @@ impl Files for Written {
         match self.text(path) {
             Some(text) if text.trim().is_empty() => Err(loader::Unreadable::Empty { path: path.to_path_buf() }),
             Some(text) => Ok(Source::new(name, text)),
-            None => Ok(Source::new(name, loader::read(&self.base.join(path))?.text)),
+            None => Ok(Source::new(name, loader::read_file(&self.base.join(path))?.text)),
         }
     }
 

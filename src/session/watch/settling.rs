@@ -69,6 +69,18 @@ impl Settling {
         Settling { stamp: None, stirred: now, last, unread: true, waiting: None, vanished: None, text, trouble }
     }
 
+    /// The same file, whose text is no news now, nor its absence where there is none.
+    pub fn knowing(mut self, text: Option<Arc<str>>) -> Settling {
+        if self.text != text {
+            if self.text.is_none() || text.is_none() {
+                self.trouble = text.is_none().then_some(Trouble::Missing);
+            }
+            self.text = text;
+            self.unread = true;
+        }
+        self
+    }
+
     pub fn stir(&mut self, how: Stir, now: Duration) {
         self.stirred = now;
         self.unread = true;

@@ -93,4 +93,6 @@ fn the_nearest_name_is_found() {
     }
     assert_eq!(nearest("ab", ["ba", "abc", "a"]), Some("ba"));
     assert_eq!(nearest("x", ["y"]), None);
+    assert_eq!(nearest("nn", ["na", "n"]), None);
+    assert_eq!(nearest("AB", ["ab"]), Some("ab"));
 }
