@@ -81,6 +81,19 @@ impl Faults {
         Some(fault)
     }
 
+    /// What stood until now no longer does: gives it out as it was.
+    pub fn mended(&mut self, code: Code, span: Span) -> Option<Fault> {
+        let index = self.by_place.remove(&(code, span))?;
+        let Entry { fault, reported, .. } = self.known.remove(index);
+        self.unreported -= usize::from(fault.count > reported);
+        self.by_place.values_mut().filter(|later| **later > index).for_each(|later| *later -= 1);
+        Some(fault)
+    }
+
+    pub fn clear(&mut self) {
+        *self = Faults::default();
+    }
+
     /// Whether any fault went on since it was last reported.
     pub fn any_unreported(&self) -> bool {
         self.unreported > 0

@@ -3,9 +3,10 @@
 use super::engine::{Engine, Running};
 use super::note::Note;
 use super::plan::{EntryItem, Guard, Plan, Test};
+use super::record::{Fault, Mended, What};
 use super::time::Time;
 use crate::model::*;
-use crate::syntax::Code;
+use crate::syntax::{Code, Span};
 
 /// A transition whose guard holds; `via` is the nested state an exit transition is written at.
 #[derive(Clone, Copy)]
@@ -27,6 +28,16 @@ impl Spawner {
         match self {
             Spawner::Top { .. } => None,
             Spawner::Entry { state, .. } => Some(state),
+        }
+    }
+
+    fn span(self, program: &Program) -> Span {
+        match self {
+            Spawner::Top { index } => program.spawns[index].span,
+            Spawner::Entry { state, index } => match &program[state].onentry[index as usize] {
+                Entry::Spawn(spawn) => spawn.span,
+                Entry::Action(block) => program[*block].span,
+            },
         }
     }
 }
@@ -220,6 +231,9 @@ impl Engine {
         if self.running[machine.index()].is_some() {
             return self.already_running(machine, spawner);
         }
+        if !self.faults.is_empty() {
+            self.spawn_is_mended(spawner);
+        }
         self.start(machine, state, spawner.state());
         self.enter(plan, machine, state);
     }
@@ -264,18 +278,20 @@ impl Engine {
         }
     }
 
+    /// A spawn that was refused before succeeds now.
+    #[cold]
+    fn spawn_is_mended(&mut self, spawner: Spawner) {
+        if let Some(fault) = self.faults.mended(Code::AlreadyRunning, spawner.span(&self.program)) {
+            let Fault { code, file, line, column, .. } = fault;
+            self.rare(What::Mended(Mended { code, file, line, column }));
+        }
+    }
+
     fn already_running(&mut self, machine: MachineId, spawner: Spawner) {
         let program = std::sync::Arc::clone(&self.program);
-        let span = match spawner {
-            Spawner::Top { index } => program.spawns[index].span,
-            Spawner::Entry { state, index } => match &program[state].onentry[index as usize] {
-                Entry::Spawn(spawn) => spawn.span,
-                Entry::Action(block) => program[*block].span,
-            },
-        };
         let message = format!("machine `{}` is running already; it goes on undisturbed", program[machine].path);
         let help = "a machine runs at most once: write a second machine, or leave the state that spawned it first";
         let state = spawner.state().map(|state| program[state].path.clone()).unwrap_or_default();
-        self.fault(Code::AlreadyRunning, span, message, Some(help.to_string()), state);
+        self.fault(Code::AlreadyRunning, spawner.span(&program), message, Some(help.to_string()), state);
     }
 }

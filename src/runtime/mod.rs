@@ -1,6 +1,7 @@
 //! The machines of a program as they run: commands and inputs go in, records come out.
 //! Never looks at the clock, the disk, the terminal or a socket.
 
+mod because;
 mod blocks;
 mod breakpoints;
 mod changes;

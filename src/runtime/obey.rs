@@ -9,7 +9,7 @@ use super::machine::Spawner;
 use super::record::{Forced, Level, Log, What};
 use crate::lua::{Cell, Ran};
 use crate::model::names::Names;
-use crate::model::{StateId, VarId};
+use crate::model::{BlockId, StateId, VarId};
 use crate::syntax::nearest::nearest;
 
 /// Why a command had no effect, as a sentence.
@@ -89,11 +89,17 @@ impl Engine {
         }
     }
 
-    /// From scratch, without onexit: the robot is stopped, variables are initialised, spawns done anew.
+    /// From scratch, without onexit: the robot is stopped, variables are initialised, spawns done anew. What went wrong
+    /// is forgotten, but for what is wrong with the text, and blocks that were stopped have another chance.
     pub(super) fn restart(&mut self, reason: &str) {
         self.rare(What::Restart { reason: reason.to_string() });
         self.rare(What::Stop { reason: "restart".to_string() });
+        self.faults.clear();
+        self.report_findings();
         self.tops.clear();
+        if self.store.any_stopped() {
+            (0..self.program.blocks.len() as u32).map(BlockId).for_each(|block| self.store.allow_again(block));
+        }
         for index in 0..self.program.vars.len() {
             let cell = self.store.cell(VarId(index as u32));
             self.store.lua.clear(cell);

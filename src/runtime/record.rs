@@ -5,6 +5,7 @@ use std::sync::Arc;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
+pub use super::because::Because;
 use super::command::{BreakAt, Command};
 use super::time::Time;
 use crate::model::Program;
@@ -90,6 +91,8 @@ pub enum What {
     },
     Log(Log),
     Error(Fault),
+    /// A fault that no longer stands, though nothing was edited: a spawn that was refused has succeeded.
+    Mended(Mended),
     /// `at`: the state to look at, where there is one: a breakpoint was met there, or something went wrong.
     Pause {
         reason: String,
@@ -142,6 +145,7 @@ impl What {
         "reply",
         "log",
         "error",
+        "mended",
         "pause",
         "resume",
         "force",
@@ -166,6 +170,9 @@ pub struct Load {
     /// Machines that run no longer, as there is nothing to start them in.
     #[serde(skip_serializing_if = "Vec::is_empty", default)]
     pub discarded: Vec<Path>,
+    /// What has machines start again or end, the one of `reason` first.
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub because: Vec<Because>,
     /// Warnings and hints of the static checks; errors follow as records of their own.
     #[serde(skip_serializing_if = "Vec::is_empty", default)]
     pub findings: Vec<Finding>,
@@ -188,6 +195,9 @@ pub struct Held {
     /// Machines that would run no longer.
     #[serde(skip_serializing_if = "Vec::is_empty", default)]
     pub discarded: Vec<Path>,
+    /// What would have machines start again or end, the one of `restarts` first.
+    #[serde(skip_serializing_if = "Vec::is_empty", default)]
+    pub because: Vec<Because>,
     /// All that the static checks found.
     #[serde(skip_serializing_if = "Vec::is_empty", default)]
     pub findings: Vec<Finding>,
@@ -291,8 +301,8 @@ impl From<crate::lua::Level> for Level {
 }
 
 /// Something that went wrong and was skipped. Comes at its first occurrence, then at most once a second of program
-/// time while it goes on; the same `code`, `file`, `line` and `column` are the same fault. A load clears all faults;
-/// those that still stand follow it.
+/// time while it goes on; the same `code`, `file`, `line` and `column` are the same fault. A load and
+/// a restart clear all faults; those that still stand follow.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Fault {
     pub code: String,
@@ -305,6 +315,15 @@ pub struct Fault {
     /// The state or machine it belongs to; empty at top level.
     pub state: Path,
     pub count: u64,
+}
+
+/// Which fault it was.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Mended {
+    pub code: String,
+    pub file: Path,
+    pub line: usize,
+    pub column: usize,
 }
 
 /// A diagnostic by place in a file.

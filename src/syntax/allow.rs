@@ -1,21 +1,23 @@
-//! Comments for the checks: `; lrp: allow CODE` stands for the next form and all that is in it. Knows nothing of codes.
+//! Comments for the checks: `; lrp: allow CODE: reason` stands for the next form and all that is in it. Knows nothing of
+//! codes.
 
 use super::findings::Findings;
 use super::pieces::{Piece, PieceKind, pieces};
 use super::source::{FileId, Span};
 
-/// One code in such a comment.
+/// Such a comment.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Allow {
-    pub code: String,
-    /// Where the code stands.
-    pub span: Span,
+    /// The words before the reason, with their places: codes, if it is right.
+    pub words: Vec<(String, Span)>,
     /// The form that it is about; none where no form follows.
     pub form: Option<Span>,
 }
 
 const MARK: &str = "lrp:";
 const ALLOW: &str = "allow";
+/// What comes before a reason.
+const REASON: char = ':';
 
 /// Those of a text whose brackets match, in its order.
 pub fn allows(text: &str, file: FileId) -> Vec<Allow> {
@@ -24,21 +26,23 @@ pub fn allows(text: &str, file: FileId) -> Vec<Allow> {
     }
     let pieces = pieces(text, file, &mut Findings::default());
     let comments = pieces.iter().enumerate().filter(|(_, piece)| piece.kind == PieceKind::Comment);
-    comments.flat_map(|(at, comment)| in_comment(text, file, *comment, &pieces[at + 1..])).collect()
+    comments.filter_map(|(at, comment)| in_comment(text, file, *comment, &pieces[at + 1..])).collect()
 }
 
-fn in_comment(text: &str, file: FileId, comment: Piece, after: &[Piece]) -> Vec<Allow> {
+fn in_comment(text: &str, file: FileId, comment: Piece, after: &[Piece]) -> Option<Allow> {
     let said = text[comment.range()].trim_start_matches(';').trim_start();
-    let codes = said.strip_prefix(MARK).map(str::trim_start).and_then(|said| said.strip_prefix(ALLOW));
-    let Some(codes) = codes.filter(|codes| codes.starts_with(char::is_whitespace)) else { return Vec::new() };
-    let form = next_form(file, after);
-    let start = comment.end as usize - codes.len();
-    let mut found = Vec::new();
-    for code in codes.split(|c: char| c.is_whitespace() || c == ',').filter(|code| !code.is_empty()) {
-        let at = start + (code.as_ptr() as usize - codes.as_ptr() as usize);
-        found.push(Allow { code: code.to_string(), span: Span::new(file, at, at + code.len()), form });
+    let said = said.strip_prefix(MARK)?.trim_start().strip_prefix(ALLOW)?;
+    if !said.starts_with(char::is_whitespace) {
+        return None;
     }
-    found
+    let codes = said.split(REASON).next().unwrap_or(said);
+    let start = comment.end as usize - said.len();
+    let words = codes.split(|c: char| c.is_whitespace() || c == ',').filter(|word| !word.is_empty());
+    let placed = words.map(|word| {
+        let at = start + (word.as_ptr() as usize - codes.as_ptr() as usize);
+        (word.to_string(), Span::new(file, at, at + word.len()))
+    });
+    Some(Allow { words: placed.collect(), form: next_form(file, after) })
 }
 
 /// The form that begins first among these pieces, if nothing but space and comments comes before it.

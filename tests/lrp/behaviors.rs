@@ -57,6 +57,11 @@ fn each_function_works() {
 }
 
 #[test]
+fn faults_go_when_they_are_mended() {
+    check("faults");
+}
+
+#[test]
 fn breakpoints_work() {
     check("breaks");
 }

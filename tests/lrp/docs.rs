@@ -89,6 +89,7 @@ fn kind(what: &What) -> &'static str {
         What::Reply { .. } => "reply",
         What::Log(_) => "log",
         What::Error(_) => "error",
+        What::Mended(_) => "mended",
         What::Pause { .. } => "pause",
         What::Resume => "resume",
         What::Force { .. } => "force",

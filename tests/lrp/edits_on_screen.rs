@@ -1,7 +1,7 @@
 //! What the screen does with edits, held edits and breakpoints, from stories of records.
 
 use lrp::runtime::command::{BreakAt, Breaking, Command, OnEdit, OnError, Saves};
-use lrp::runtime::record::{Breakpoint, Change, Element, Fault, Finding, Held, Level, Log, Op, Setter, What};
+use lrp::runtime::record::{Because, Breakpoint, Change, Element, Fault, Finding, Held, Level, Log, Op, Setter, What};
 use lrp::ui::app::{App, Effect};
 use lrp::ui::view::{Edit, View};
 use serde_json::json;
@@ -230,8 +230,55 @@ fn held(restarts: Option<&str>) -> What {
         restarts: restarts.map(Into::into),
         again: if restarts.is_none() { vec!["follower".into()] } else { Vec::new() },
         discarded: Vec::new(),
+        because: vec![because("follower", Element::State, "follower/looking", Op::Changed)],
         findings: vec![finding],
     })
+}
+
+fn because(machine: &str, kind: Element, path: &str, op: Op) -> Because {
+    Because { machine: machine.into(), kind, path: path.into(), op }
+}
+
+/// A change is told with what it does itself, whatever words are in its name.
+#[test]
+fn a_held_edit_tells_which_change_does_what() {
+    let changes = vec![
+        change(Op::Added, Element::Variable, "active"),
+        change(Op::Added, Element::Variable, "state"),
+        change(Op::Changed, Element::Variable, "follower/looking"),
+        change(Op::Removed, Element::State, "follower/looking"),
+        change(Op::Changed, Element::State, "follower/finished"),
+    ];
+    let looking = because("follower", Element::State, "follower/looking", Op::Removed);
+    let held = Held {
+        changes,
+        restarts: Some(looking.to_string()),
+        again: Vec::new(),
+        discarded: Vec::new(),
+        because: vec![looking],
+        findings: Vec::new(),
+    };
+    let told = |held: Held| {
+        let mut story = Story::searching();
+        story.tell(What::Held(held));
+        let mut app = screen(80, 24, &story);
+        press(&mut app, "E");
+        frame(&app)
+    };
+    let undisturbed = |frame: &str| frame.matches("nothing is disturbed").count();
+    let restarts = told(held.clone());
+    assert!(
+        restarts.contains("removed state follower/looking    restarts: active state looking removed"),
+        "{restarts}"
+    );
+    assert_eq!((restarts.matches("restarts: ").count(), undisturbed(&restarts)), (1, 3), "{restarts}");
+    let again = told(Held { restarts: None, again: vec!["follower".into()], ..held.clone() });
+    assert!(again.contains("removed state follower/looking    again: follower"), "{again}");
+    assert_eq!((again.matches("again: ").count(), undisturbed(&again)), (2, 3), "{again}");
+    let ends = told(Held { restarts: None, discarded: vec!["follower".into()], ..held.clone() });
+    assert!(ends.contains("removed state follower/looking    ends: follower"), "{ends}");
+    let without = told(Held { because: Vec::new(), ..held });
+    assert!(without.contains("the program begins again: active state follower/looking removed"), "{without}");
 }
 
 #[test]

@@ -1,7 +1,9 @@
 //! A record as one readable line: `5 500 enter esc/tock`.
 
-use lrp::runtime::record::{Breakpoint, Change, Fault, Finding, Forced, Held, Load, Log, Op, Taken, Way};
+use lrp::runtime::record::{Because, Breakpoint, Change, Fault, Finding, Forced, Held, Load, Log, Op, Taken, Way};
 use lrp::runtime::{Command, Record, What};
+
+type Path = std::sync::Arc<str>;
 
 /// With a line's end. Texts of programs are left out.
 pub fn line(record: &Record) -> String {
@@ -32,6 +34,7 @@ pub fn line(record: &Record) -> String {
         What::Reply { bridge, name, id, value } => format!("reply {bridge}.{name} #{id} {value}"),
         What::Log(log) => logged(log),
         What::Error(fault) => failed(fault),
+        What::Mended(it) => format!("mended {}:{}:{}: {}", it.file, it.line, it.column, it.code),
         What::Pause { reason, at: None } => format!("pause: {reason}"),
         What::Pause { reason, at: Some(at) } => format!("pause at {at}: {reason}"),
         What::Resume => "resume".into(),
@@ -49,6 +52,7 @@ pub fn line(record: &Record) -> String {
 fn loaded(load: &Load) -> String {
     let reason = load.reason.as_ref().map(|reason| format!("; restarts: {reason}")).unwrap_or_default();
     assert_eq!(load.restarted, load.reason.is_some());
+    blamed(&load.changes, load.reason.as_ref(), (&load.again, &load.discarded), &load.because);
     let changes: String = load.changes.iter().map(changed).collect();
     let findings = told(&load.findings);
     let machines = machines(&load.again, &load.discarded);
@@ -57,9 +61,24 @@ fn loaded(load: &Load) -> String {
 
 fn waiting(held: &Held) -> String {
     let reason = held.restarts.as_ref().map(|reason| format!("; would restart: {reason}")).unwrap_or_default();
+    blamed(&held.changes, held.restarts.as_ref(), (&held.again, &held.discarded), &held.because);
     let changes: String = held.changes.iter().map(changed).collect();
     let findings = told(&held.findings);
     format!("held{reason}{changes}{}{findings}", machines(&held.again, &held.discarded))
+}
+
+/// For all that is disturbed one of the changes is to blame.
+fn blamed(changes: &[Change], reason: Option<&String>, (again, discarded): (&[Path], &[Path]), because: &[Because]) {
+    for because in because {
+        assert!(changes.iter().any(|change| because.is_of(change)), "{because:?} is none of {changes:?}");
+    }
+    match reason {
+        Some(reason) => assert_eq!(Some(reason), because.first().map(Because::to_string).as_ref()),
+        None => {
+            let ends: Vec<&Path> = again.iter().chain(discarded).collect();
+            assert_eq!(ends, because.iter().map(|because| &because.machine).collect::<Vec<_>>());
+        }
+    }
 }
 
 /// What the checks find has a corpus of its own; here it matters what is an error, whether anything runs, and which files

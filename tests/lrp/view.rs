@@ -352,6 +352,7 @@ fn whats() -> impl Strategy<Value = What> {
                 reason: None,
                 again: vec![path.clone()],
                 discarded: vec![to.clone()],
+                because: Vec::new(),
                 findings: Vec::new(),
                 files: Vec::new(),
                 program: None,
@@ -364,6 +365,7 @@ fn whats() -> impl Strategy<Value = What> {
                 restarts: Some(format!("active state {path} changed")),
                 again: vec![path],
                 discarded: Vec::new(),
+                because: Vec::new(),
                 findings: Vec::new(),
             })
         }),

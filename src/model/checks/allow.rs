@@ -2,12 +2,20 @@
 
 use crate::syntax::allow::{Allow, allows};
 use crate::syntax::nearest::nearest;
-use crate::syntax::{Code, Diagnostic, FileId, Source};
+use crate::syntax::{Code, Diagnostic, FileId, Source, Span};
 
 pub struct Allowed {
-    /// Each with the code it names and whether that was of any use.
-    known: Vec<(Allow, Code, Use)>,
-    unknown: Vec<Allow>,
+    known: Vec<Known>,
+    unknown: Vec<Diagnostic>,
+}
+
+/// A code that a comment names.
+struct Known {
+    code: Code,
+    span: Span,
+    /// The form that the comment is about.
+    form: Option<Span>,
+    used: Use,
 }
 
 #[derive(Clone, Copy, PartialEq)]
@@ -20,21 +28,32 @@ impl Allowed {
     pub fn of(sources: &[Source]) -> Allowed {
         let mut allowed = Allowed { known: Vec::new(), unknown: Vec::new() };
         for (index, source) in sources.iter().enumerate() {
-            for allow in allows(&source.text, FileId(index as u16)) {
-                match Code::named(&allow.code) {
-                    Some(code) => allowed.known.push((allow, code, Use::NotYet)),
-                    None => allowed.unknown.push(allow),
-                }
-            }
+            allows(&source.text, FileId(index as u16)).iter().for_each(|allow| allowed.add(allow));
         }
         allowed
+    }
+
+    /// From a word on that isn't even nearly a code, the rest is most likely meant as a reason.
+    fn add(&mut self, Allow { words, form }: &Allow) {
+        for (index, (word, span)) in words.iter().enumerate() {
+            if let Some(code) = Code::named(word) {
+                self.known.push(Known { code, span: *span, form: *form, used: Use::NotYet });
+                continue;
+            }
+            let message = format!("no finding has the code `{word}`");
+            let finding = Diagnostic::warning(Code::UnknownCode, *span, message);
+            match nearest(word, Code::ALL.iter().map(|code| code.name())) {
+                Some(near) => self.unknown.push(finding.help(format!("did you mean `{near}`?"))),
+                None => return self.unknown.push(finding.help(help(&words[..index], &words[index..]))),
+            }
+        }
     }
 
     /// Whether a comment allows a finding.
     pub fn covers(&mut self, finding: &Diagnostic) -> bool {
         let mut covered = false;
-        for (allow, code, used) in &mut self.known {
-            let within = allow.form.is_some_and(|form| {
+        for Known { code, form, used, .. } in &mut self.known {
+            let within = form.is_some_and(|form| {
                 form.file == finding.span.file && form.start <= finding.span.start && finding.span.end <= form.end
             });
             if within && *code == finding.code {
@@ -46,25 +65,31 @@ impl Allowed {
     }
 
     pub fn unknown(&self) -> impl Iterator<Item = Diagnostic> + '_ {
-        self.unknown.iter().map(|allow| {
-            let help = match nearest(&allow.code, Code::ALL.iter().map(|code| code.name())) {
-                Some(near) => format!("did you mean `{near}`?"),
-                None => "`lrp check --explain` lists the codes".to_string(),
-            };
-            Diagnostic::warning(Code::UnknownCode, allow.span, format!("no finding has the code `{}`", allow.code))
-                .help(help)
-        })
+        self.unknown.iter().cloned()
     }
 
     pub fn unused(&self) -> impl Iterator<Item = Diagnostic> + '_ {
-        let unused = self.known.iter().filter(|(_, _, used)| *used == Use::NotYet);
-        unused.map(|(allow, code, _)| {
+        let unused = self.known.iter().filter(|known| known.used == Use::NotYet);
+        unused.map(|Known { code, span, form, .. }| {
             let message = format!("this allows `{}`, but there is nothing of that kind to allow", code.name());
-            let help = match allow.form {
+            let help = match form {
                 Some(_) => "it stands for the form after it: put it before the one that is meant, or remove it",
                 None => "it stands for the form after it, and none follows: put it before the one that is meant",
             };
-            Diagnostic::hint(Code::UnusedAllow, allow.span, message).help(help)
+            Diagnostic::hint(Code::UnusedAllow, *span, message).help(help)
         })
+    }
+}
+
+type Words = [(String, Span)];
+
+/// `rest`: from the word on that is no code.
+fn help(before: &Words, rest: &Words) -> String {
+    let joined = |words: &Words| words.iter().map(|(word, _)| &**word).collect::<Vec<_>>().join(" ");
+    let are_codes = before.iter().all(|(word, _)| Code::named(word).is_some());
+    match (if are_codes { before } else { &[] }, rest) {
+        ([], [_]) => "`lrp check --explain` lists the codes".to_string(),
+        ([], _) => "`lrp check --explain` lists the codes; a reason is written after them, behind a colon".to_string(),
+        _ => format!("a reason is written behind a colon: `; lrp: allow {}: {}`", joined(before), joined(rest)),
     }
 }

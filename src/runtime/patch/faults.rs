@@ -22,7 +22,7 @@ impl Engine {
         self.faults.edited(self.now, |code, span| places.moved(code, span))
     }
 
-    pub(super) fn report_findings(&mut self) {
+    pub(in crate::runtime) fn report_findings(&mut self) {
         let program = Arc::clone(&self.program);
         for Diagnostic { code, span, message, help, .. } in program.findings.iter().filter(|finding| finding.is_error())
         {
@@ -105,7 +105,15 @@ impl<'p> Places<'p> {
                 (state.spawns().map(|(_, spawn)| spawn).find(same)?, state.path.clone())
             }
         };
-        Some(Moved { span: now.span, source: new.source(now.span).clone(), state: path })
+        self.may_conflict(now).then(|| Moved { span: now.span, source: new.source(now.span).clone(), state: path })
+    }
+
+    /// Whether another spawn can have its machine running already.
+    fn may_conflict(&self, spawn: &Spawn) -> bool {
+        let new = self.passage.new;
+        let nested = new.states.iter().flat_map(|state| state.spawns().map(|(_, spawn)| spawn));
+        let other = |it: &Spawn| it.machine == spawn.machine && it.target.is_some() && it.span != spawn.span;
+        new.spawns.iter().chain(nested).any(other)
     }
 }
 

@@ -82,9 +82,10 @@ impl Engine {
 fn told(changes: Vec<Change>, findings: Vec<Finding>, program: &Program, verdict: &Verdict) -> Held {
     Held {
         changes,
-        restarts: verdict.restarts.clone(),
+        restarts: verdict.restarts(),
         again: verdict.again_paths(program),
         discarded: verdict.discarded_paths(),
+        because: verdict.because(),
         findings,
     }
 }

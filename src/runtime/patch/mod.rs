@@ -45,13 +45,15 @@ impl Engine {
         self.rare(What::Load(loaded(&new, changes.clone(), &verdict)));
         self.follow_breakpoints(&old, matching);
         ended.into_iter().for_each(|machine| self.rare(What::Discard { machine }));
+        if let Some(reason) = verdict.restarts() {
+            return self.restart(&reason);
+        }
         still.into_iter().for_each(|fault| self.rare(What::Error(fault)));
         self.report_findings();
         self.report_missing(&verdict);
-        match &verdict.restarts {
-            Some(reason) => self.restart(reason),
-            None if first => self.begin(),
-            None => self.apply(&passage, &verdict),
+        match first {
+            true => self.begin(),
+            false => self.apply(&passage, &verdict),
         }
     }
 
@@ -70,10 +72,11 @@ impl Engine {
 fn loaded(program: &Arc<Program>, changes: Vec<Change>, verdict: &Verdict) -> Load {
     Load {
         changes,
-        restarted: verdict.restarts.is_some(),
-        reason: verdict.restarts.clone(),
+        restarted: verdict.restarts().is_some(),
+        reason: verdict.restarts(),
         again: verdict.again_paths(program),
         discarded: verdict.discarded_paths(),
+        because: verdict.because(),
         findings: super::findings::findings(program, |finding| !finding.is_error()),
         files: super::findings::files(program),
         program: Some(Arc::clone(program)),

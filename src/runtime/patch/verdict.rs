@@ -7,12 +7,13 @@ use crate::model::diff::{same_actions, same_spawns};
 use crate::model::*;
 use crate::runtime::OnEdit;
 use crate::runtime::engine::{Engine, Running};
+use crate::runtime::record::{Because, Element, Op};
 use crate::syntax::Span;
 
 #[derive(Default)]
 pub(super) struct Verdict {
-    /// Why the program starts again from scratch.
-    pub restarts: Option<String>,
+    /// Why the program starts again from scratch, if at all: each machine that can't go on, in step order.
+    pub restarts: Vec<Because>,
     /// Machines that start again on their own, outer ones first.
     pub again: Vec<Again>,
     /// Machines that run no longer.
@@ -26,12 +27,14 @@ pub(super) struct Again {
     pub state: StateId,
     /// The active state that holds it; none at top level.
     pub by: Option<StateId>,
+    pub because: Because,
 }
 
 pub(super) struct Discarded {
     /// In the old program.
     pub was: MachineId,
     pub path: Arc<str>,
+    pub because: Because,
     /// What it would have started again in, where the machine itself is still there.
     pub missing: Option<Missing>,
 }
@@ -48,6 +51,17 @@ impl Verdict {
     pub fn ending(&self) -> impl Iterator<Item = MachineId> {
         let again = self.again.iter().map(|again| again.was);
         again.chain(self.discarded.iter().map(|discarded| discarded.was))
+    }
+
+    /// The reason to start again from scratch: the first.
+    pub fn restarts(&self) -> Option<String> {
+        self.restarts.first().map(Because::to_string)
+    }
+
+    pub fn because(&self) -> Vec<Because> {
+        let again = self.again.iter().map(|again| &again.because);
+        let discarded = self.discarded.iter().map(|discarded| &discarded.because);
+        self.restarts.iter().chain(again).chain(discarded).cloned().collect()
     }
 
     pub fn again_paths(&self, new: &Program) -> Vec<Arc<str>> {
@@ -71,7 +85,7 @@ impl Verdict {
         let judge = Judge { running, passage };
         let mut verdict = Verdict::default();
         match mode {
-            OnEdit::Restart => verdict.restarts = tops.iter().find_map(|&machine| judge.why_restart(machine)),
+            OnEdit::Restart => tops.iter().for_each(|&machine| judge.restart(machine, &mut verdict)),
             OnEdit::Keep => tops.iter().for_each(|&machine| judge.keep(machine, None, &mut verdict)),
         }
         verdict
@@ -85,19 +99,29 @@ struct Judge<'v> {
 
 impl Judge<'_> {
     /// The one case in which a program can't go on: what is active is gone, or would have done something else.
-    fn why_restart(&self, machine: MachineId) -> Option<String> {
+    fn restart(&self, was: MachineId, verdict: &mut Verdict) {
         let Passage { old, new, matching } = self.passage;
-        let running = self.running[machine.index()].as_ref()?;
-        if matching.machine(machine).is_none() {
-            return Some(format!("active machine {} removed", old[machine].path));
+        let Some(running) = &self.running[was.index()] else { return };
+        let Some(machine) = matching.machine(was) else { return verdict.restarts.push(self.gone(was)) };
+        match matching.state(running.state).filter(|&now| same_actions(old, running.state, new, now, matching)) {
+            Some(_) => running.nested.iter().for_each(|&nested| self.restart(nested, verdict)),
+            None => verdict.restarts.push(self.unlike(machine, running.state)),
         }
-        match matching.state(running.state) {
-            None => Some(format!("active state {} removed", old[running.state].path)),
-            Some(now) if !same_actions(old, running.state, new, now, matching) => {
-                Some(format!("active state {} changed", new[now].path))
-            }
-            Some(_) => running.nested.iter().find_map(|&nested| self.why_restart(nested)),
-        }
+    }
+
+    fn gone(&self, was: MachineId) -> Because {
+        let path = &self.passage.old[was].path;
+        Because { machine: path.clone(), kind: Element::Machine, path: path.clone(), op: Op::Removed }
+    }
+
+    /// `was`: its active state, which is gone or changed.
+    fn unlike(&self, machine: MachineId, was: StateId) -> Because {
+        let Passage { old, new, matching } = self.passage;
+        let (path, op) = match matching.state(was) {
+            Some(now) => (&new[now].path, Op::Changed),
+            None => (&old[was].path, Op::Removed),
+        };
+        Because { machine: new[machine].path.clone(), kind: Element::State, path: path.clone(), op }
     }
 
     /// `by`: the new active state that holds the machine.
@@ -105,17 +129,19 @@ impl Judge<'_> {
         let Passage { old, new, matching } = self.passage;
         let Some(running) = &self.running[was.index()] else { return };
         let Some(machine) = matching.machine(was) else {
-            return verdict.discarded.push(Discarded { was, path: old[was].path.clone(), missing: None });
+            let (path, because) = (old[was].path.clone(), self.gone(was));
+            return verdict.discarded.push(Discarded { was, path, because, missing: None });
         };
         let stays = matching.state(running.state).filter(|&now| same_spawns(old, running.state, new, now, matching));
         if let Some(state) = stays {
             return running.nested.iter().for_each(|&nested| self.keep(nested, Some(state), verdict));
         }
+        let because = self.unlike(machine, running.state);
         match self.start(machine, by, &running.start) {
-            Ok(state) => verdict.again.push(Again { was, machine, state, by }),
+            Ok(state) => verdict.again.push(Again { was, machine, state, by, because }),
             Err(missing) => {
                 let path = new[machine].path.clone();
-                verdict.discarded.push(Discarded { was, path, missing: Some(missing) });
+                verdict.discarded.push(Discarded { was, path, because, missing: Some(missing) });
             }
         }
     }

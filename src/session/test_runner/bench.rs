@@ -292,21 +292,15 @@ impl Bench {
         Ok(engine.value(path))
     }
 
-    /// What is wrong in the program since it was last taken over, each fault once, and in later edits that were refused.
+    /// What is wrong in the program that runs, each fault once, and in edits that were refused since it was taken over.
     pub fn troubles(&self) -> Vec<Trouble> {
         let loaded = self.records.iter().rposition(|record| matches!(record.what, What::Load(_))).unwrap_or(0);
-        let mut troubles: Vec<Trouble> = Vec::new();
+        let mut troubles: Vec<Trouble> = self.driver.engine().faults().map(trouble).collect();
         for record in &self.records[loaded..] {
-            match &record.what {
-                What::Error(fault) => put(&mut troubles, trouble(fault)),
-                What::Reject { findings } => {
-                    let errors = findings.iter().filter(|finding| finding.severity == "error");
-                    let all =
-                        errors.map(|finding| Trouble { finding: finding.clone(), state: Arc::default(), count: 1 });
-                    all.for_each(|trouble| put(&mut troubles, trouble));
-                }
-                _ => {}
-            }
+            let What::Reject { findings } = &record.what else { continue };
+            let errors = findings.iter().filter(|finding| finding.severity == "error");
+            let all = errors.map(|finding| Trouble { finding: finding.clone(), state: Arc::default(), count: 1 });
+            all.for_each(|trouble| put(&mut troubles, trouble));
         }
         troubles
     }
@@ -339,8 +333,8 @@ fn put(troubles: &mut Vec<Trouble>, new: Trouble) {
     }
 }
 
-fn trouble(fault: &Fault) -> Trouble {
-    let Fault { code, message, help, file, line, column, state, count } = fault.clone();
+fn trouble(fault: Fault) -> Trouble {
+    let Fault { code, message, help, file, line, column, state, count } = fault;
     Trouble {
         finding: Finding { severity: "error".to_string(), code, message, help, file, line, column },
         state,

@@ -81,6 +81,7 @@ fn what(what: &What) -> String {
         What::Reply { bridge, name, value, .. } => format!("reply to {bridge}.{name}: {}", text(value)),
         What::Log(log) => format!("log {:?}: {}", log.level, log.message),
         What::Error(fault) => format!("error {}:{}:{}: {}", fault.file, fault.line, fault.column, fault.message),
+        What::Mended(mended) => format!("mended {}:{}:{}: {}", mended.file, mended.line, mended.column, mended.code),
         What::Pause { reason, .. } => format!("pause: {reason}"),
         What::Resume => "resume".to_string(),
         What::Force { state, how: Forced::Transition } => format!("transition by hand to {state}"),

@@ -17,7 +17,7 @@ pub fn lines(app: &App, width: u16) -> Vec<(Tone, String)> {
     let Some(held) = &app.view().held else { return Vec::new() };
     let room = width.saturating_sub(4);
     let outcome = Outcome::of_held(held);
-    let effects: Vec<_> = outcome.changes.iter().map(|change| (change, effect(app, &outcome, change))).collect();
+    let effects: Vec<_> = outcome.changes.iter().map(|change| (change, outcome.effect_of(change))).collect();
     let mut lines = Vec::new();
     for sentence in would(&outcome, effects.iter().any(|(_, effect)| effect.is_some())) {
         lines.extend(format::wrap(&sentence, room).into_iter().map(|line| (Tone::Heading, line)));
@@ -55,10 +55,6 @@ fn would(outcome: &Outcome, is_told: bool) -> Vec<String> {
     let again = outcome.again.iter().map(|machine| format!("starts again: {machine}"));
     let ends = outcome.discarded.iter().map(|machine| format!("ends: {machine}"));
     restarts.chain(again).chain(ends).collect()
-}
-
-fn effect(app: &App, outcome: &Outcome, change: &Change) -> Option<String> {
-    outcome.effect_of(change, |state| app.view().is_active(state))
 }
 
 fn undisturbed(change: &Change) -> &'static str {

@@ -3,12 +3,12 @@
 use serde_json::Value;
 
 use super::mode::is_own_doing;
-use super::problem::{Origin, Problem};
+use super::problem::{Origin, Problem, ProblemKey};
 use super::{Cause, Edit, Kind, Message, Mode, Path, TAKEN_KEPT, View, Which, World, name, owner};
 use crate::model::TransitionId;
 use crate::model::ways::guard_block;
 use crate::runtime::command::Command;
-use crate::runtime::record::{BridgeState, Fault, Forced, Health, Log, Record, Taken, What};
+use crate::runtime::record::{BridgeState, Fault, Forced, Health, Log, Mended, Record, Taken, What};
 use crate::ui::format;
 
 impl View {
@@ -36,6 +36,7 @@ impl View {
             What::Call { .. } | What::Reply { .. } => (),
             What::Log(log) => self.log(log),
             What::Error(fault) => self.fault(fault),
+            What::Mended(mended) => self.mended(mended),
             What::Pause { reason, .. } => self.pause(reason),
             What::Resume => self.resume(),
             What::Force { state, how } => self.force(state, *how),
@@ -186,6 +187,11 @@ impl View {
         }
     }
 
+    fn mended(&mut self, Mended { code, file, line, column }: &Mended) {
+        let key = ProblemKey { code: code.clone(), file: file.clone(), line: *line, column: *column };
+        self.problems.retain(|problem| problem.key != key || problem.origin != Origin::Run);
+    }
+
     fn pause(&mut self, reason: &str) {
         match reason {
             // The stop itself is told.
@@ -232,12 +238,13 @@ impl View {
         way
     }
 
-    /// One because of an edit was told with the edit.
+    /// One because of an edit was told with the edit. What is wrong with the text is told again.
     fn restart(&mut self, reason: &str) {
         let told = matches!(&self.edit, Some(Edit::Taken(outcome)) if outcome.restarted.as_deref() == Some(reason));
         if is_own_doing(reason) && !matches!(self.edit, Some(Edit::Rejected { .. } | Edit::Held { .. })) {
             self.edit = Some(Edit::Restarted);
         }
+        self.problems.retain(|problem| problem.origin != Origin::Run);
         self.begin_again();
         match told {
             true => (),

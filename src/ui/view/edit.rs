@@ -1,7 +1,7 @@
 //! The outcome of a save: in the few words that fit the status line, and line by line.
 
-use super::{Path, name, owner};
-use crate::runtime::record::{Change, Element, Finding, Held, Load, Op};
+use super::{Path, name};
+use crate::runtime::record::{Because, Change, Element, Finding, Held, Load, Op};
 use crate::ui::format;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -36,6 +36,8 @@ pub struct Outcome {
     pub again: Vec<Path>,
     /// Machines that run no longer.
     pub discarded: Vec<Path>,
+    /// What of it does that.
+    pub because: Vec<Because>,
 }
 
 impl Edit {
@@ -63,6 +65,7 @@ impl Outcome {
             restarted: load.restarted.then(reason),
             again: load.again.clone(),
             discarded: load.discarded.clone(),
+            because: load.because.clone(),
         }
     }
 
@@ -73,6 +76,7 @@ impl Outcome {
             restarted: held.restarts.clone(),
             again: held.again.clone(),
             discarded: held.discarded.clone(),
+            because: held.because.clone(),
         }
     }
 
@@ -106,20 +110,13 @@ impl Outcome {
     }
 
     /// What one of its changes does to what runs, `restarts: active state looking changed`; none where nothing is disturbed.
-    /// `is_active`: of a state's path.
-    pub fn effect_of(&self, change: &Change, is_active: impl Fn(&str) -> bool) -> Option<String> {
-        let reason = self.restarted.as_ref().filter(|reason| reason.split(' ').any(|word| *word == *change.path));
-        if let Some(reason) = reason {
-            return Some(format!("restarts: {}", reason.replace(&*change.path, name(&change.path))));
+    pub fn effect_of(&self, change: &Change) -> Option<String> {
+        let because = self.because.iter().find(|because| because.is_of(change))?;
+        if self.restarted.is_some() {
+            return Some(format!("restarts: {}", because.sentence(name(&because.path))));
         }
-        let concerned = |machine: &&Path| match change.kind {
-            Element::State => owner(&change.path) == Some(machine) && is_active(&change.path),
-            Element::Machine => change.path == **machine,
-            _ => false,
-        };
-        let again = self.again.iter().find(concerned).map(|machine| format!("again: {}", name(machine)));
-        let ended = || self.discarded.iter().find(concerned).map(|machine| format!("ends: {}", name(machine)));
-        again.or_else(ended)
+        let verb = if self.discarded.contains(&because.machine) { "ends" } else { "again" };
+        Some(format!("{verb}: {}", name(&because.machine)))
     }
 }
 

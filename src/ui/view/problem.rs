@@ -47,7 +47,7 @@ impl Gravity {
 /// Where a problem comes from, and so what makes it go.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Origin {
-    /// It happens while the program runs; a load clears it.
+    /// It happens while the program runs; a load, a restart or its mending clears it.
     Run,
     /// The checks of the program that runs; the next load replaces them.
     Check,
