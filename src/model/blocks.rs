@@ -73,37 +73,32 @@ fn unknown_name(
         return None;
     }
     let span = place(program.source(block.span), block.span, name.line, Some((&name.name, Role::Free)));
-    match access {
-        Access::Write if is_known => {
-            let message = format!("`{}` can't be assigned: it is not a variable of this program", name.name);
-            Some(Diagnostic::error(Code::UnknownVariable, span, message).help("declare a variable of another name"))
-        }
-        _ if let Some(renamed) = Names::of(program).var(block.machine, &name.name) => {
-            let (message, help) = renamed_words(&name.name, program.name(renamed));
-            Some(Diagnostic::error(Code::UnknownVariable, span, message).help(help))
-        }
-        _ => {
-            let mut known: Vec<String> =
-                Names::of(program).vars(block.machine).iter().map(ToString::to_string).collect();
-            known.extend(program.bridges.iter().map(|bridge| bridge.name.to_string()));
-            known.extend(at_hand.iter().map(ToString::to_string));
-            let message = format!("`{}` is not a variable in scope here", name.name);
-            let inside = program.vars.iter().find(|var| *var.name == *name.name);
-            let system = lua::SYSTEM.contains(&&*name.name);
-            let help = match (inside, nearest(&name.name, known.iter().map(String::as_str))) {
-                (Some(var), _) => {
-                    format!("`{}` is seen only in its machine: declare it further out to share it", var.path)
-                }
-                _ if system => {
-                    format!("blocks can't reach files and processes; `--allow-system` lets them use `{}`", name.name)
-                }
-                (None, Some(near)) => format!("did you mean `{near}`?"),
-                (None, None) => {
-                    format!("declare it with `(var {} := [..])`, or use `local` inside the block", name.name)
-                }
-            };
-            Some(Diagnostic::error(Code::UnknownVariable, span, message).help(help))
-        }
+    let (message, help) = if is_known {
+        let message = format!("`{}` can't be assigned: it is not a variable of this program", name.name);
+        (message, "declare a variable of another name".to_string())
+    } else if let Some(renamed) = Names::of(program).var(block.machine, &name.name) {
+        renamed_words(&name.name, program.name(renamed))
+    } else {
+        let message = format!("`{}` is not a variable in scope here", name.name);
+        (message, what_instead(program, block, &name.name, at_hand))
+    };
+    Some(Diagnostic::error(Code::UnknownVariable, span, message).help(help))
+}
+
+/// What was probably meant by a name that nothing in scope has.
+fn what_instead(program: &Program, block: &Block, name: &str, at_hand: &[&str]) -> String {
+    if let Some(inside) = program.vars.iter().find(|var| *var.name == *name) {
+        return format!("`{}` is seen only in its machine: declare it further out to share it", inside.path);
+    }
+    if lua::SYSTEM.contains(&name) {
+        return format!("blocks can't reach files and processes; `--allow-system` lets them use `{name}`");
+    }
+    let vars = Names::of(program).vars(block.machine);
+    let bridges = program.bridges.iter().map(|bridge| &*bridge.name);
+    let known = vars.iter().map(|var| &**var).chain(bridges).chain(at_hand.iter().copied());
+    match nearest(name, known) {
+        Some(near) => format!("did you mean `{near}`?"),
+        None => format!("declare it with `(var {name} := [..])`, or use `local` inside the block"),
     }
 }
 

@@ -100,11 +100,9 @@ fn a_thousand_saves_disturb_nothing() {
     let file = folder.path("a.lrp");
     let memory = folder.running.memory();
     let counted = RefCell::new(Vec::new());
-    let loads = RefCell::new(0);
     let follow = |record: &Value| {
         if record["kind"] == "load" {
             assert_eq!(record["restarted"], false, "{record}");
-            *loads.borrow_mut() += 1;
         }
         if record["var"] == "m/n" {
             counted.borrow_mut().push(record["value"].as_u64().unwrap());
@@ -126,7 +124,6 @@ fn a_thousand_saves_disturb_nothing() {
     });
     let counted = counted.into_inner();
     assert!(counted.windows(2).all(|pair| pair[1] == pair[0] + 1), "{counted:?}");
-    assert!(loads.into_inner() > 3, "saves are taken over while others follow");
     if let (Some(before), Some(after)) = (memory, folder.running.memory()) {
         assert!(after < before + (4 << 20), "{before} bytes, then {after}");
     }

@@ -65,6 +65,8 @@ type Written = (String, String, usize);
 pub struct AtTransitions {
     all: BTreeSet<Written>,
     set: BTreeSet<Written>,
+    /// Some uses say the old name of what was renamed: their text changes when the rename is finished, and nothing else.
+    is_halfway: bool,
 }
 
 impl AtTransitions {
@@ -95,13 +97,14 @@ impl AtTransitions {
             }
             all.insert(written);
         }
-        AtTransitions { all, set }
+        AtTransitions { all, set, is_halfway: program.alias.is_some() }
     }
 
     /// What is written as before is broken at as before, and nothing else.
     pub fn check(&self, after: &AtTransitions, load: &Load) -> Result<(), String> {
-        let alone = load.changes.len() == 1;
-        if load.changes.iter().any(|change| change.op == Op::Renamed) {
+        let is_rename = load.changes.iter().any(|change| change.op == Op::Renamed);
+        if is_rename || self.is_halfway {
+            let alone = load.changes.len() == usize::from(is_rename);
             return match alone && self.set.len() != after.set.len() {
                 true => Err(format!("{:?} became {:?}", self.set, after.set)),
                 false => Ok(()),
