@@ -204,9 +204,12 @@ impl<'a> Scan<'a> {
 /// What speaks for a form where this text begins, with its `(`.
 fn begins_form(text: &str) -> Option<Evidence> {
     let inside = text[1..].trim_start_matches([' ', '\t']);
-    let word = &inside[..inside.find(|c: char| !c.is_alphanumeric()).unwrap_or(inside.len())];
+    let word = first_word(inside);
     Keyword::of(word)?;
-    let next = inside[word.len()..].trim_start();
-    let second = &next[..next.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(next.len())];
+    let second = first_word(inside[word.len()..].trim_start());
     Some(if matches!(second, "" | "and" | "or") { Evidence::Weak } else { Evidence::Strong })
+}
+
+fn first_word(text: &str) -> &str {
+    &text[..text.find(|c: char| !c.is_alphanumeric() && c != '_').unwrap_or(text.len())]
 }
