@@ -1,12 +1,12 @@
-//! What the screen does with edits, held edits and breakpoints, from stories of records.
+//! What the screen does with edits and held edits, from stories of records.
 
-use lrp::runtime::command::{BreakAt, Breaking, Command, OnEdit, OnError, Saves};
-use lrp::runtime::record::{Because, Breakpoint, Change, Element, Fault, Finding, Held, Level, Log, Op, Setter, What};
+use lrp::runtime::command::{Command, OnEdit, OnError, Saves};
+use lrp::runtime::record::{Because, Change, Element, Fault, Finding, Held, Level, Log, Op, What};
 use lrp::ui::app::{App, Effect};
 use lrp::ui::view::{Edit, View};
 use serde_json::json;
 
-use crate::frames::{check, frame, press, screen};
+use crate::frames::{SIZES, check, check_at, frame, go_on, press, screen};
 use crate::story::{LINE_FOLLOWER, Story, program};
 
 fn renamed(kind: Element, path: &str, to: &str) -> Change {
@@ -17,31 +17,8 @@ fn change(op: Op, kind: Element, path: &str) -> Change {
     Change { op, kind, path: path.into(), to: None }
 }
 
-fn view_of(story: &Story) -> View {
-    let mut view = View::new(10.0);
-    story.records.iter().for_each(|record| view.apply(record));
-    view
-}
-
-/// What a story goes on with reaches a screen that has seen its beginning.
-fn go_on(app: &mut App, tell: impl FnOnce(&mut Story)) {
-    let mut story = Story::new();
-    tell(story.at(90));
-    story.records.iter().for_each(|record| app.record(record));
-}
-
 fn newest(view: &View, count: usize) -> Vec<String> {
     view.journal.newest_first().take(count).map(|entry| entry.text.clone()).collect()
-}
-
-const SIZES: [(u16, u16); 3] = [(80, 24), (120, 40), (40, 24)];
-
-fn check_sizes(name: &str, story: &Story, keys: &str) {
-    for (width, height) in SIZES {
-        let mut app = screen(width, height, story);
-        press(&mut app, keys);
-        check(&format!("{name}_{width}x{height}"), &app);
-    }
 }
 
 fn searching_renamed() -> (std::sync::Arc<lrp::model::Program>, Vec<Change>) {
@@ -55,11 +32,11 @@ fn searching_renamed() -> (std::sync::Arc<lrp::model::Program>, Vec<Change>) {
 
 #[test]
 fn a_rename_takes_everything_along() {
-    let before = view_of(&Story::searching());
+    let before = Story::searching().view();
     let mut story = Story::searching();
     let (program, changes) = searching_renamed();
     story.edit(&program, changes, None, &[]);
-    let view = view_of(&story);
+    let view = story.view();
     let active = view.active("follower/searching/sweep").map(|path| &**path);
     assert_eq!(active, Some("follower/searching/sweep/lookright"));
     assert!(view.is_active("follower/searching"));
@@ -84,7 +61,7 @@ fn a_renamed_variable_is_not_the_state_of_that_path() {
     story.load(&program(text), &[]).spawn("m", None).set("m/a", json!(1), "init").enter("m/a");
     let to = "(machine m (var b := [1]) (state a)) (spawn m a)";
     story.at(9).edit(&program(to), vec![renamed(Element::Variable, "m/a", "m/b")], None, &[]);
-    let view = view_of(&story);
+    let view = story.view();
     assert_eq!(view.variables["m/b"].value, Some(json!(1)));
     assert!(view.is_active("m/a"));
     assert_eq!(
@@ -100,7 +77,7 @@ fn selection_folding_and_values_stay_on_what_was_renamed() {
     assert!(app.is_folded("follower/looking/lookalgo"));
     assert_eq!(app.selected_value().map(|path| &**path), Some("follower/looking/lookalgo/time"));
     let (program, changes) = searching_renamed();
-    go_on(&mut app, |story| _ = story.edit(&program, changes, None, &[]));
+    go_on(&mut app, 90, |story| _ = story.edit(&program, changes, None, &[]));
     assert_eq!(app.selected().map(|path| &**path), Some("follower/searching/sweep"));
     assert!(app.is_folded("follower/searching/sweep"));
     assert_eq!(app.selected_value().map(|path| &**path), Some("follower/searching/sweep/time"));
@@ -111,7 +88,7 @@ fn a_lone_change_is_named_and_many_are_counted() {
     let summary = |changes: Vec<Change>| {
         let mut story = Story::searching();
         story.edit(&program(LINE_FOLLOWER), changes, None, &[]);
-        newest(&view_of(&story), 1).remove(0)
+        newest(&story.view(), 1).remove(0)
     };
     assert_eq!(summary(vec![change(Op::Changed, Element::State, "follower/looking")]), "saved: ~state looking");
     let transition = "follower: on outofline moving -> looking tlooking";
@@ -151,11 +128,11 @@ fn tuned_values_that_a_restart_cost_are_offered_back() {
             change(Op::Added, Element::Event, "follower/tilted"),
         ],
     );
-    check_sizes("restarted", &story, "");
+    check_at(&SIZES, "restarted", &story, "");
     let mut app = screen(80, 24, &story);
     let set = |var: &str, value: &str| Effect::Command(Command::Set { var: var.into(), value: value.into() });
     assert_eq!(press(&mut app, "u"), [set("lightlim", "140"), set("maxlook", "250")]);
-    go_on(&mut app, |story| {
+    go_on(&mut app, 90, |story| {
         story.set("lightlim", json!(140), "command").set("maxlook", json!(250), "command");
     });
     assert_eq!(press(&mut app, "u"), []);
@@ -174,7 +151,7 @@ fn news_of_many_changes_stand_out_over_the_log() {
 fn a_new_initial_value_is_not_a_loss() {
     let mut story = tuned();
     restarted(&mut story, vec![change(Op::Changed, Element::Variable, "lightlim")]);
-    let view = view_of(&story);
+    let view = story.view();
     let lost: Vec<String> = view.lost().map(|(path, value)| format!("{path} {value}")).collect();
     assert_eq!(lost, ["maxlook 250"]);
 }
@@ -188,8 +165,8 @@ fn a_machine_that_starts_again_is_told() {
     let text = LINE_FOLLOWER.replace("(state lookright", "(state lookaside");
     story.at(90).edit(&program(&text), changed, None, &[algo]).set(&format!("{algo}/time"), json!(100), "init");
     story.enter(&format!("{algo}/lookleft"));
-    check_sizes("again", &story, "");
-    let view = view_of(&story);
+    check_at(&SIZES, "again", &story, "");
+    let view = story.view();
     let lost: Vec<String> = view.lost().map(|(path, value)| format!("{path} {value}")).collect();
     assert_eq!(lost, ["follower/looking/lookalgo/time 300"]);
 }
@@ -206,7 +183,7 @@ fn news_fades() {
     assert!(!news(&other));
     for _ in 0..12 {
         assert!(news(&app));
-        go_on(&mut app, |story| _ = story.tell(What::Status { rate: 10.0, late: 0.1 }));
+        go_on(&mut app, 90, |story| _ = story.tell(What::Status { rate: 10.0, late: 0.1 }));
     }
     assert!(!news(&app) && frame(&app).contains("u tuned"));
 }
@@ -286,16 +263,16 @@ fn a_held_edit_waits_for_a_person() {
     let mut story = Story::searching();
     story.tell(What::Command { command: Command::Saves { mode: Saves::Hold } });
     story.at(83).tell(held(Some("active state follower/looking changed")));
-    check_sizes("holding", &story, "");
-    check_sizes("held", &story, "E");
+    check_at(&SIZES, "holding", &story, "");
+    check_at(&SIZES, "held", &story, "E");
     let mut app = screen(80, 24, &story);
     assert_eq!(press(&mut app, "E A"), [Effect::Command(Command::ApplyHeld)]);
     assert_eq!(press(&mut app, "X"), [Effect::Command(Command::DropHeld)]);
     assert_eq!(press(&mut app, "E !"), [Effect::Command(Command::Runstop)]);
     assert_eq!(press(&mut app, "M"), [Effect::Command(Command::OnEdit { mode: OnEdit::Keep })]);
-    go_on(&mut app, |story| _ = story.tell(held(None)));
+    go_on(&mut app, 90, |story| _ = story.tell(held(None)));
     assert!(frame(&app).contains("again: follower"), "the list stays and tells what it would do now");
-    go_on(&mut app, |story| _ = story.edit(&program(LINE_FOLLOWER), Vec::new(), None, &[]));
+    go_on(&mut app, 90, |story| _ = story.edit(&program(LINE_FOLLOWER), Vec::new(), None, &[]));
     assert!(!frame(&app).contains("held edit"));
     assert_eq!(press(&mut app, "A"), []);
     assert_eq!(app.message(), Some("no edit is held; S holds the next saves"));
@@ -306,17 +283,17 @@ fn a_held_edit_that_is_told_again_is_no_news() {
     let mut story = Story::searching();
     story.tell(held(None)).reject(&[("this `(` is never closed", "line_follower.lrp", 15)]);
     story.at(84).tell(held(Some("active state follower/looking changed")));
-    let view = view_of(&story);
+    let view = story.view();
     assert!(matches!(view.edit, Some(Edit::Rejected { .. })));
     assert!(view.held.is_some_and(|held| held.restarts.is_some()));
-    assert!(newest(&view_of(&story), 1)[0].starts_with("not taken over"));
+    assert!(newest(&story.view(), 1)[0].starts_with("not taken over"));
 }
 
 #[test]
 fn a_dropped_edit_is_forgotten() {
     let mut story = Story::searching();
     story.tell(held(None)).tell(What::Command { command: Command::DropHeld });
-    let view = view_of(&story);
+    let view = story.view();
     assert_eq!((view.held.is_none(), &view.edit), (true, &Some(Edit::Dropped)));
 }
 
@@ -326,114 +303,12 @@ fn what_was_chosen_is_seen() {
     story.tell(What::Command { command: Command::OnEdit { mode: OnEdit::Keep } });
     story.tell(What::Command { command: Command::Saves { mode: Saves::Hold } });
     story.tell(What::Command { command: Command::OnError { mode: OnError::Pause } });
-    check_sizes("chosen", &story, "");
+    check_at(&SIZES, "chosen", &story, "");
     let mut app = screen(80, 24, &story);
     let command = |command| vec![Effect::Command(command)];
     assert_eq!(press(&mut app, "M"), command(Command::OnEdit { mode: OnEdit::Restart }));
     assert_eq!(press(&mut app, "S"), command(Command::Saves { mode: Saves::Apply }));
     assert_eq!(press(&mut app, "P"), command(Command::OnError { mode: OnError::Continue }));
-}
-
-const OUT_OF_LINE: &str = "follower: on outofline moving -> looking tlooking";
-
-fn breakpoints() -> What {
-    let state = |state: &str| BreakAt::State { state: state.into() };
-    let condition = BreakAt::Condition { condition: "time > 800".into(), machine: "follower/looking/lookalgo".into() };
-    let all = [
-        (state("follower/looking"), Setter::Command),
-        (state("follower/bumpback"), Setter::Source),
-        (BreakAt::Transition { transition: OUT_OF_LINE.into() }, Setter::Command),
-        (condition, Setter::Command),
-    ];
-    What::Breakpoints { all: all.map(|(at, by)| Breakpoint { at, by }).to_vec() }
-}
-
-#[test]
-fn breakpoints_are_marked() {
-    let mut story = Story::searching();
-    story.tell(breakpoints());
-    check_sizes("breakpoints", &story, "Down");
-    check_sizes("breakpoint_list", &story, "D Down Down");
-    let mut app = screen(80, 24, &story);
-    press(&mut app, "Down i");
-    check("breakpoint_detail_80x24", &app);
-}
-
-#[test]
-fn breakpoints_are_set_where_a_person_is() {
-    let mut story = Story::searching();
-    story.tell(breakpoints());
-    let toggle = |keys: &str, at: BreakAt, mode: Breaking| {
-        let mut app = screen(80, 24, &story);
-        assert_eq!(press(&mut app, keys), [Effect::Command(Command::Break { at, mode })], "{keys}");
-    };
-    let state = |state: &str| BreakAt::State { state: state.into() };
-    toggle("Down B", state("follower/moving"), Breaking::Set);
-    toggle("Down Down B", state("follower/looking"), Breaking::Clear);
-    let transition = |text: &str| BreakAt::Transition { transition: text.into() };
-    toggle("Down i Tab Down Down Down B", transition(OUT_OF_LINE), Breaking::Clear);
-    let sweep = "follower/looking/lookalgo: ontime time returnleft -> lookright tlookright";
-    toggle("4 Down Down B", transition(sweep), Breaking::Set);
-    let condition = BreakAt::Condition { condition: "nobump".into(), machine: "follower".into() };
-    toggle("C n o b u m p Enter", condition, Breaking::Set);
-    toggle("D B", state("follower/looking"), Breaking::Clear);
-    let mut app = screen(80, 24, &story);
-    assert_eq!(press(&mut app, "B"), []);
-    assert_eq!(app.message(), Some("follower is a machine; select a state, or type a condition (C)"));
-    assert_eq!(press(&mut app, "D Down B").len(), 1);
-    assert_eq!(app.message(), Some("its (break) stays in the text: no pause at state follower/bumpback"));
-    assert_eq!(press(&mut app, "X").len(), 4, "all of them");
-    assert_eq!(press(&mut app, "Esc C Esc"), []);
-    check("condition_80x24", &{
-        let mut app = screen(80, 24, &story);
-        press(&mut app, "C t i m e");
-        app
-    });
-}
-
-#[test]
-fn a_mistake_in_what_was_typed_stands_above_it_whole() {
-    for (cols, rows) in [(80, 24), (40, 24)] {
-        let mut app = screen(cols, rows, &Story::searching());
-        press(&mut app, "C t i e m Enter");
-        go_on(&mut app, |story| {
-            let message = "`tiem`: `tiem` is not a variable in scope here; did you mean `time`?".into();
-            story.tell(What::Log(Log { level: Level::Error, message, state: "".into(), file: "".into(), line: 0 }));
-        });
-        check(&format!("refused_{cols}x{rows}"), &app);
-    }
-}
-
-#[test]
-fn a_breakpoint_that_is_met_is_looked_at() {
-    let mut story = Story::searching();
-    story.tell(breakpoints());
-    let reason = "breakpoint: entered follower/looking".to_string();
-    story.at(90).tell(What::Pause { reason, at: Some("follower/looking".into()) });
-    check_sizes("paused", &story, "");
-    let mut app = screen(80, 24, &Story::searching());
-    press(&mut app, "h");
-    go_on(&mut app, |story| {
-        let at = "follower/looking/lookalgo/lookleft".into();
-        story.tell(What::Pause { reason: "breakpoint: time > 100".into(), at: Some(at) });
-    });
-    assert_eq!(app.selected().map(|path| &**path), Some("follower/looking/lookalgo/lookleft"));
-    assert!(!app.is_folded("follower"));
-}
-
-#[test]
-fn an_error_that_pauses_is_looked_at() {
-    let mut story = Story::searching();
-    let at = "follower/looking/lookalgo/lookright";
-    story.at(81).fault("attempt to index a nil value (field 'range')", at, 19, 1);
-    story.tell(What::Pause { reason: format!("error in {at}: attempt to index a nil value"), at: Some(at.into()) });
-    check_sizes("error_paused", &story, "");
-    let mut app = screen(80, 24, &story);
-    let there = Effect::OpenEditor { file: "line_follower.lrp".into(), line: 19, column: 27 };
-    assert_eq!(press(&mut app, "o"), [there]);
-    assert_eq!(app.selected().map(|path| &**path), Some(at));
-    press(&mut app, "Up");
-    assert_ne!(press(&mut app, "o"), [Effect::OpenEditor { file: "line_follower.lrp".into(), line: 19, column: 27 }]);
 }
 
 #[test]

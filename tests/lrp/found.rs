@@ -5,7 +5,7 @@ use std::path::Path;
 use lrp::lua::Checker;
 
 use crate::syntax::{any_block, any_text};
-use crate::walk::walk;
+use crate::walk::walk_by_bytes;
 
 fn each(target: &str, mut check: impl FnMut(&[u8])) {
     let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/fuzz/found").join(target);
@@ -32,7 +32,6 @@ fn blocks() {
 #[test]
 fn edits() {
     each("edits", |bytes| {
-        let numbers: Vec<u32> = bytes.iter().map(|&byte| u32::from(byte)).collect();
-        walk(&numbers).unwrap_or_else(|wrong| panic!("{wrong}"));
+        walk_by_bytes(bytes).unwrap_or_else(|wrong| panic!("{wrong}"));
     });
 }

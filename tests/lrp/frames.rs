@@ -94,10 +94,12 @@ pub fn check(name: &str, app: &App) {
     assert!(seen == wanted, "{name} differs; UPDATE=1 writes it anew:\n{seen}\nwas:\n{wanted}");
 }
 
-const SIZES: [(u16, u16); 5] = [(80, 24), (120, 40), (80, 12), (40, 24), (200, 60)];
+const ALL_SIZES: [(u16, u16); 5] = [(80, 24), (120, 40), (80, 12), (40, 24), (200, 60)];
+/// Those that tell most.
+pub const SIZES: [(u16, u16); 3] = [(80, 24), (120, 40), (40, 24)];
 
-fn check_sizes(name: &str, story: &Story, keys: &str) {
-    for (width, height) in SIZES {
+pub fn check_at(sizes: &[(u16, u16)], name: &str, story: &Story, keys: &str) {
+    for &(width, height) in sizes {
         let mut app = screen(width, height, story);
         press(&mut app, keys);
         check(&format!("{name}_{width}x{height}"), &app);
@@ -106,12 +108,12 @@ fn check_sizes(name: &str, story: &Story, keys: &str) {
 
 #[test]
 fn searching() {
-    check_sizes("searching", &Story::searching(), "Down Down Down");
+    check_at(&ALL_SIZES, "searching", &Story::searching(), "Down Down Down");
 }
 
 #[test]
 fn the_outer_machine() {
-    check_sizes("outer", &Story::searching(), "Down");
+    check_at(&ALL_SIZES, "outer", &Story::searching(), "Down");
 }
 
 #[test]
@@ -119,14 +121,14 @@ fn with_a_fault() {
     let mut story = Story::searching();
     story.at(81).fault("attempt to index a nil value (field 'range')", "follower/looking/lookalgo/lookright", 19, 12);
     story.tell(What::Pause { reason: "error in lookright".into(), at: None });
-    check_sizes("fault", &story, "4 i");
+    check_at(&ALL_SIZES, "fault", &story, "4 i");
 }
 
 #[test]
 fn with_a_rejected_edit() {
     let mut story = Story::searching();
     story.at(81).reject(&[("this `(` is never closed", "line_follower.lrp", 15)]);
-    check_sizes("rejected", &story, "");
+    check_at(&ALL_SIZES, "rejected", &story, "");
 }
 
 #[test]
@@ -261,5 +263,12 @@ fn weight_alone_tells_without_colours() {
 
 #[test]
 fn an_empty_program() {
-    check_sizes("empty", &Story::new(), "");
+    check_at(&ALL_SIZES, "empty", &Story::new(), "");
+}
+
+/// What a story goes on with, from a step on, reaches a screen that has seen its beginning.
+pub fn go_on(app: &mut App, step: u64, tell: impl FnOnce(&mut Story)) {
+    let mut story = Story::new();
+    tell(story.at(step));
+    story.records.iter().for_each(|record| app.record(record));
 }

@@ -7,6 +7,7 @@ use lrp::runtime::record::*;
 use lrp::runtime::time::Time;
 use lrp::session::compile::Compiler;
 use lrp::syntax::Source;
+use lrp::ui::view::View;
 use serde_json::{Value, json};
 
 pub const LINE_FOLLOWER: &str = include_str!("line_follower.lrp");
@@ -28,6 +29,13 @@ pub struct Story {
 impl Story {
     pub fn new() -> Story {
         Story { records: Vec::new(), step: 0 }
+    }
+
+    /// The picture that a screen has of it.
+    pub fn view(&self) -> View {
+        let mut view = View::new(10.0);
+        self.records.iter().for_each(|record| view.apply(record));
+        view
     }
 
     /// The line follower from its start until it has searched the line for a while.

@@ -9,7 +9,7 @@ use lrp::ui::curve;
 use lrp::ui::view::History;
 use serde_json::json;
 
-use crate::frames::{check, frame, press, screen};
+use crate::frames::{SIZES, check, frame, go_on, press, screen};
 use crate::story::{Story, program};
 
 const TEXT: &str = "\
@@ -43,15 +43,8 @@ fn start() -> App {
     screen(80, 24, &story())
 }
 
-/// What happens next on a screen.
-fn go_on(app: &mut App, tell: impl FnOnce(&mut Story)) {
-    let mut story = Story::new();
-    tell(story.at(10));
-    story.records.iter().for_each(|record| app.record(record));
-}
-
 fn by_hand(app: &mut App, values: &[(&str, serde_json::Value)]) {
-    go_on(app, |story| {
+    go_on(app, 10, |story| {
         for (var, value) in values {
             story.set(var, value.clone(), "command");
         }
@@ -88,7 +81,7 @@ fn a_tuned_value_is_written_back_and_stays_what_it_is() {
     app.written(written.into_iter().map(|it| (it, Ok(()))).collect());
     assert_eq!(app.message(), Some("written to line_follower.lrp: speed 0.3"));
     assert_eq!(unwritten(&app), [""; 0]);
-    go_on(&mut app, |story| {
+    go_on(&mut app, 10, |story| {
         story.load(&program(&to), &[(Op::Changed, Element::Variable, "m/speed")]).set("m/speed", json!(0.3), "init");
     });
     assert_eq!(unwritten(&app), [""; 0]);
@@ -133,7 +126,7 @@ fn what_could_not_be_written_is_said_and_stays_marked() {
     app.written(written.into_iter().map(|it| (it, Err(changed()))).collect());
     assert_eq!(app.message(), Some("not written: a.lrp isn't what runs now; save it so that it runs, then again"));
     assert_eq!(unwritten(&app), ["m/speed 0.3"]);
-    go_on(&mut app, |story| _ = story.set("m/speed", json!(0.9), "m/s"));
+    go_on(&mut app, 10, |story| _ = story.set("m/speed", json!(0.9), "m/s"));
     assert_eq!(unwritten(&app), [""; 0], "the program has given it another value since");
 }
 
@@ -141,7 +134,7 @@ fn what_could_not_be_written_is_said_and_stays_marked() {
 fn what_was_tuned_in_a_machine_that_starts_anew_can_still_be_written() {
     let mut app = start();
     by_hand(&mut app, &[("m/s/n/turn", json!(55))]);
-    go_on(&mut app, |story| {
+    go_on(&mut app, 10, |story| {
         story.tell(What::Discard { machine: "m/s/n".into() }).enter("m/u");
         story.enter("m/s");
         look(story);
@@ -155,12 +148,12 @@ fn what_was_tuned_in_a_machine_that_starts_anew_can_still_be_written() {
 fn an_edit_of_the_initial_value_settles_it() {
     let mut app = start();
     by_hand(&mut app, &[("m/speed", json!(0.3)), ("period", json!(90))]);
-    go_on(&mut app, |story| {
+    go_on(&mut app, 10, |story| {
         let text = TEXT.replace("0.25", "0.4");
         story.load(&program(&text), &[(Op::Changed, Element::Variable, "m/speed")]).set("m/speed", json!(0.4), "init");
     });
     assert_eq!(unwritten(&app), ["period 90"]);
-    go_on(&mut app, |story| {
+    go_on(&mut app, 10, |story| {
         let text = TEXT.replace("period", "cycle");
         let change =
             Change { op: Op::Renamed, kind: Element::Variable, path: "period".into(), to: Some("cycle".into()) };
@@ -175,7 +168,7 @@ fn a_variable_is_reset_and_that_is_no_loss() {
     by_hand(&mut app, &[("m/speed", json!(0.3))]);
     let reset = || Command::Reset { var: "m/speed".into() };
     assert_eq!(press(&mut app, "3 Down r"), [Effect::Command(reset())]);
-    go_on(&mut app, |story| _ = story.tell(What::Command { command: reset() }).set("m/speed", json!(0.25), "init"));
+    go_on(&mut app, 10, |story| _ = story.tell(What::Command { command: reset() }).set("m/speed", json!(0.25), "init"));
     assert_eq!(unwritten(&app), [""; 0]);
     assert_eq!(app.view().lost().count(), 0);
     let mut story = Story::searching();
@@ -282,7 +275,7 @@ fn a_curve_reaches_from_the_least_to_the_greatest() {
 
 #[test]
 fn tuned_values_on_the_screen() {
-    for (width, height) in [(80, 24), (120, 40), (40, 24)] {
+    for (width, height) in SIZES {
         let mut story = Story::searching();
         story.at(82).set("lightlim", json!(140), "command");
         let mut app = screen(width, height, &story);

@@ -9,7 +9,7 @@ use lrp::runtime::record::{Answer, Taken, Way};
 use lrp::runtime::{Command, Explain, Record, What};
 use serde_json::json;
 
-use crate::frames::{check, frame, press, screen};
+use crate::frames::{SIZES, check, frame, press, screen};
 use crate::lines::line;
 use crate::runs;
 use crate::stage::{Head, read_event};
@@ -41,7 +41,7 @@ fn searching() -> Story {
 
 #[test]
 fn what_a_state_waits_for() {
-    for (width, height) in [(80, 24), (120, 40), (40, 24)] {
+    for (width, height) in SIZES {
         let mut app = screen(width, height, &searching());
         press(&mut app, "Down Down y");
         check(&format!("why_not_{width}x{height}"), &app);

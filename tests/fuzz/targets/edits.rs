@@ -17,9 +17,7 @@ mod walk;
 use libfuzzer_sys::fuzz_target;
 
 fuzz_target!(|bytes: &[u8]| {
-    // A byte is choice enough.
-    let numbers: Vec<u32> = bytes.iter().map(|&byte| u32::from(byte)).collect();
-    if let Err(wrong) = walk::walk(&numbers) {
+    if let Err(wrong) = walk::walk_by_bytes(bytes) {
         panic!("{wrong}");
     }
 });

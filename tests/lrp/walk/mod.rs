@@ -31,7 +31,12 @@ struct Walk {
     watched: Vec<Watched>,
 }
 
-pub fn walk(numbers: &[u32]) -> Result<(), String> {
+/// A byte is choice enough.
+pub fn walk_by_bytes(bytes: &[u8]) -> Result<(), String> {
+    walk(&bytes.iter().map(|&byte| u32::from(byte)).collect::<Vec<u32>>())
+}
+
+fn walk(numbers: &[u32]) -> Result<(), String> {
     let choices = &mut Choices::new(numbers);
     let (mut plot, mut other) = (Plot::draw(choices), Plot::draw(choices));
     let stage = Stage::new(1, Duration::from_secs(5), Vec::new());
