@@ -1,0 +1,184 @@
+//! A bridge's process: reads orders, has the bridge carry them out on one thread, writes what it says. The robot is
+//! stopped whenever lrp is gone, and when the bridge panics.
+
+use std::fs::File;
+use std::io::{BufRead, BufReader, Read, Write};
+use std::os::fd::{FromRawFd, RawFd};
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::thread::Builder;
+use std::time::Duration;
+
+use crate::inbox::{End, Inbox};
+use crate::message::{Event, Form, Item, Level, Order, Output};
+use crate::robot::Robot;
+use crate::{Bridge, News, PROTOCOL};
+
+/// How long a bridge may take to stop its robot and end, once lrp is gone.
+const END: Duration = Duration::from_secs(2);
+
+const LAST_WORDS: Duration = Duration::from_millis(500);
+
+/// What a bridge's process ends with.
+const FINE: i32 = 0;
+const PANICKED: i32 = 101;
+const HUNG: i32 = 70;
+
+/// Speaks for a bridge over the process's standard input and output: the whole `main` of a bridge that is a program.
+pub fn run<B: Bridge>() -> i32 {
+    Conversation::of_process().speak::<B>(std::io::stdin(), std::io::stdout())
+}
+
+/// What the `bridge!` macro exports. The descriptors are the bridge's from now on.
+#[doc(hidden)]
+pub fn run_on<B: Bridge>(input: RawFd, output: RawFd) -> i32 {
+    // SAFETY: whoever loads the library hands over two open descriptors that nobody else uses.
+    let (input, output) = unsafe { (File::from_raw_fd(input), File::from_raw_fd(output)) };
+    Conversation::of_process().speak::<B>(input, output)
+}
+
+pub(crate) struct Conversation {
+    robot: Robot,
+    inbox: Arc<Inbox>,
+    /// Called, from another thread, where a bridge doesn't end.
+    give_up: fn(),
+}
+
+impl Conversation {
+    fn of_process() -> Conversation {
+        let conversation = Conversation::new(|| std::process::exit(HUNG));
+        watch_panics(&conversation.robot, &conversation.inbox);
+        conversation
+    }
+
+    pub fn new(give_up: fn()) -> Conversation {
+        Conversation { robot: Robot::default(), inbox: Arc::default(), give_up }
+    }
+
+    /// Until the input is closed.
+    pub fn speak<B: Bridge>(self, input: impl Read + Send + 'static, mut output: impl Write + Send + 'static) -> i32 {
+        let Conversation { robot, inbox, give_up } = self;
+        robot.say(Event::Hello { protocol: PROTOCOL, about: B::about() });
+        let (alive, ended) = channel::<()>();
+        let (written, all_written) = channel::<()>();
+        let (reading, writing) = (Arc::clone(&inbox), robot.clone());
+        let reader = Builder::new().name("orders".into()).spawn(move || {
+            read(input, &reading);
+            if ended.recv_timeout(END) == Err(RecvTimeoutError::Timeout) {
+                give_up();
+            }
+        });
+        let writer = Builder::new().name("events".into()).spawn(move || {
+            let _written: Sender<()> = written;
+            writing.write(&mut output);
+        });
+        if reader.is_err() || writer.is_err() {
+            return HUNG;
+        }
+        let code = serve::<B>(&robot, &inbox);
+        robot.close();
+        // Perhaps nobody reads any more.
+        let _ = all_written.recv_timeout(LAST_WORDS);
+        drop(alive);
+        code
+    }
+}
+
+fn read(input: impl Read, inbox: &Inbox) {
+    for line in BufReader::new(input).lines() {
+        let Ok(line) = line else { break };
+        // What this version doesn't know is left out, so that a newer lrp can say more.
+        if let Ok(order) = serde_json::from_str(&line) {
+            inbox.put(order);
+        }
+    }
+    inbox.end(End::Closed);
+}
+
+fn serve<B: Bridge>(robot: &Robot, inbox: &Inbox) -> i32 {
+    let mut bridge: Option<B> = None;
+    loop {
+        let end = match inbox.take() {
+            Ok(order) => {
+                let obey = AssertUnwindSafe(|| obey(&mut bridge, order, robot));
+                catch_unwind(obey).err().map(|_| End::Panicked)
+            }
+            Err(end) => Some(end),
+        };
+        if let Some(end) = end {
+            let stop = AssertUnwindSafe(|| {
+                if let Some(mut bridge) = bridge {
+                    bridge.stop();
+                }
+            });
+            return match (catch_unwind(stop), end) {
+                (Ok(()), End::Closed) => FINE,
+                _ => PANICKED,
+            };
+        }
+    }
+}
+
+fn obey<B: Bridge>(bridge: &mut Option<B>, order: Order, robot: &Robot) {
+    match order {
+        Order::Describe { config } => match B::offer(&config) {
+            Ok(description) => robot.offer(description),
+            Err(problems) => robot.refuse(problems),
+        },
+        Order::Configure(form) => configure(bridge, form, robot),
+        Order::Ping { id } => robot.say(Event::Pong { id }),
+        Order::Stop => {
+            bridge.iter_mut().for_each(Bridge::stop);
+            robot.say(Event::Stopped);
+        }
+        order => {
+            // Before anything is configured there is nobody to tell.
+            if let Some(bridge) = bridge {
+                tell(bridge, order);
+            }
+        }
+    }
+}
+
+fn configure<B: Bridge>(bridge: &mut Option<B>, form: Form, robot: &Robot) {
+    match B::offer(&form.config) {
+        Err(problems) => robot.refuse(problems),
+        Ok(description) => {
+            robot.offer(description);
+            match bridge {
+                Some(bridge) => bridge.configure(form),
+                None => *bridge = Some(B::connect(robot.clone(), form)),
+            }
+        }
+    }
+}
+
+fn tell<B: Bridge>(bridge: &mut B, order: Order) {
+    match order {
+        Order::Send { items } => {
+            for item in items {
+                match item {
+                    Item::Output(Output { output, value }) => bridge.send(&output, value),
+                    Item::Call(call) => bridge.call(call),
+                }
+            }
+            bridge.flush();
+        }
+        Order::Cancel { id } => bridge.cancel(id),
+        Order::Answer { id, error } => bridge.hear(News::Answer { id, error }),
+        Order::Variables { variables } => bridge.hear(News::Variables(variables)),
+        Order::States { t, machines } => bridge.hear(News::States { t, machines }),
+        Order::Describe { .. } | Order::Configure(_) | Order::Ping { .. } | Order::Stop => {}
+    }
+}
+
+/// A bridge with a panicked thread can't be relied on: it stops its robot and ends, and lrp starts it anew.
+fn watch_panics(robot: &Robot, inbox: &Arc<Inbox>) {
+    let (robot, inbox, usual) = (robot.clone(), Arc::clone(inbox), std::panic::take_hook());
+    std::panic::set_hook(Box::new(move |panic| {
+        robot.log(Level::Error, format!("the bridge panicked: {panic}"));
+        inbox.end(End::Panicked);
+        usual(panic);
+    }));
+}
