@@ -16,6 +16,7 @@ mod edits_on_screen;
 mod found;
 mod frames;
 mod graph;
+mod graph_on_screen;
 mod half_written;
 mod imports;
 mod isolation;

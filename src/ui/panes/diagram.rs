@@ -1,7 +1,8 @@
 //! A machine's drawing for a place of a certain size, and which of the program's elements each part of the drawing is.
 
+use super::graph::Spot;
 use crate::model::{MachineId, Program, StateId, TransitionId};
-use crate::ui::graph::{self, Drawing, EdgeKind, Options, Place, Rows};
+use crate::ui::graph::{self, Drawing, EdgeKind, Options, Part, Place, Point, Rows};
 use crate::ui::machine_graph;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -48,6 +49,19 @@ impl Diagram {
         let own = program[machine].transitions.get(index as usize).copied();
         let exits = from.filter(|_| index == machine_graph::EXIT).map(|state| &program[state].exits);
         own.into_iter().chain(exits.into_iter().flatten().copied())
+    }
+
+    /// What stands in a cell of the drawing.
+    pub fn at(&self, program: &Program, machine: MachineId, at: Point) -> Option<Spot> {
+        match self.drawing.cell(at.x, at.y).part {
+            Part::Blank => None,
+            Part::Box(node) | Part::Name(node) | Part::Mark(node) | Part::Inside(node) => {
+                Some(self.nodes[node].map_or(Spot::Machine(machine), Spot::State))
+            }
+            Part::Line(edge) | Part::Label(edge) | Part::Head(edge) | Part::Crossing { across: edge, .. } => {
+                self.transitions(program, machine, edge).next().map(Spot::Transition)
+            }
+        }
     }
 
     pub fn node_of(&self, state: StateId) -> Option<usize> {

@@ -6,8 +6,8 @@ use ratatui::style::{Modifier, Style};
 
 use super::breakpoints::mark;
 use super::diagram::Diagram;
-use super::{Title, draw_nothing};
-use crate::model::{MachineId, Program, StateId};
+use super::{Title, below_title, draw_nothing};
+use crate::model::{MachineId, Program, StateId, TransitionId};
 use crate::runtime::record::Setter;
 use crate::ui::app::App;
 use crate::ui::format;
@@ -24,13 +24,41 @@ pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
     if program[machine].states.is_empty() {
         draw_nothing(app, area, buffer, "This machine has no states yet.");
     }
-    let area = Rect { x: area.x + 1.min(area.width), width: area.width.saturating_sub(2), ..area };
+    let area = canvas(area);
     let diagram = app.diagram(program, machine, area);
     let brush = Brush::new(app, program, machine, &diagram);
     brush.draw(area, buffer);
     let note = if app.follows() { "· follow" } else { "" };
     let room = area.width.saturating_sub(4 + format::width(note));
     Title::new(path_in(&program[machine].path, room), note)
+}
+
+/// The part of the pane below its title in which the drawing may stand.
+fn canvas(area: Rect) -> Rect {
+    Rect { x: area.x + 1.min(area.width), width: area.width.saturating_sub(2), ..area }
+}
+
+/// What of a program is drawn at a cell.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Spot {
+    /// The wildcard source, which stands for any state of it.
+    Machine(MachineId),
+    State(StateId),
+    /// Its line, head or label. Where two lines cross, the one that goes across.
+    Transition(TransitionId),
+}
+
+/// What is drawn at a cell of the screen, for the whole area of the pane, title included; none where nothing is.
+pub fn at(app: &App, area: Rect, cell: Position) -> Option<Spot> {
+    let (program, machine) = app.program().zip(app.machine())?;
+    let area = canvas(below_title(area));
+    if !area.contains(cell) {
+        return None;
+    }
+    let diagram = app.diagram(program, machine, area);
+    let (left, top) = Brush::new(app, program, machine, &diagram).origin(area);
+    let (x, y) = (cell.x - area.x, cell.y - area.y);
+    diagram.at(program, machine, Point { x: left.saturating_add(x), y: top.saturating_add(y) })
 }
 
 /// `follower / looking / lookalgo`, closer where there is little room, and then only its end.

@@ -37,7 +37,7 @@ impl Title {
 
 /// A pane with its title.
 pub fn draw(app: &App, pane: Pane, area: Rect, buffer: &mut Buffer) {
-    let inside = Rect { y: area.y + 1.min(area.height), height: area.height.saturating_sub(1), ..area };
+    let inside = below_title(area);
     let title = match pane {
         Pane::Machines => machines::draw(app, inside, buffer),
         Pane::Graph => graph::draw(app, inside, buffer),
@@ -47,6 +47,11 @@ pub fn draw(app: &App, pane: Pane, area: Rect, buffer: &mut Buffer) {
         Pane::Detail => detail::draw(app, inside, buffer),
     };
     draw_title(app, pane, &title, Pen::new(buffer, area, 0));
+}
+
+/// A pane's area without its first row.
+fn below_title(area: Rect) -> Rect {
+    Rect { y: area.y + 1.min(area.height), height: area.height.saturating_sub(1), ..area }
 }
 
 fn draw_title(app: &App, pane: Pane, title: &Title, mut pen: Pen) {
