@@ -32,10 +32,12 @@ impl fmt::Display for Unwritable {
         match self {
             Unwritable::Changed => f.write_str("reads otherwise in the file by now"),
             Unwritable::NotLiteral(code) => {
-                write!(f, "begins with `{code}`, which is no literal: o opens it in the editor")
+                write!(f, "begins with `{code}`, which is no literal: change it in the editor")
             }
             Unwritable::NoText => f.write_str("holds what can't be written as a literal"),
-            Unwritable::OtherEntries => f.write_str("has other entries than the table in the text: o opens the editor"),
+            Unwritable::OtherEntries => {
+                f.write_str("has other entries than the table in the text: change it in the editor")
+            }
             Unwritable::Same => f.write_str("begins with this value already"),
         }
     }

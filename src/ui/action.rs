@@ -1,7 +1,5 @@
 //! The one table of what a person can do: the key map, the footer, the help and docs/keys.md are all made from it.
 
-use std::fmt::Write;
-
 use super::key::Key;
 use super::layout::Pane;
 
@@ -92,6 +90,7 @@ pub struct Entry {
     pub action: Action,
     /// For configuration: lower case with hyphens.
     pub id: &'static str,
+    /// Unless a person has others.
     pub keys: &'static [&'static str],
     /// For the footer; empty where it isn't shown there.
     pub label: &'static str,
@@ -226,67 +225,19 @@ impl Entry {
         }
     }
 
-    /// `Space`, `e, Enter`
-    pub fn keys_as_text(&self) -> String {
-        self.keys.join(", ")
-    }
-
-    fn has(&self, key: Key) -> bool {
-        self.keys.iter().any(|text| text.parse() == Ok(key))
+    /// A test reads them all.
+    pub fn default_keys(&self) -> Vec<Key> {
+        self.keys.iter().filter_map(|text| text.parse().ok()).collect()
     }
 }
 
-/// What a key does while a pane has the focus: the pane's own meaning before the general one.
-pub fn of_key(key: Key, pane: Pane) -> Option<Action> {
-    let mut fitting = TABLE.iter().filter(|entry| entry.works_in(pane) && entry.has(key));
-    let own = fitting.clone().find(|entry| matches!(entry.reach, Reach::Panes(_)));
-    own.or_else(|| fitting.next()).map(|entry| entry.action)
-}
-
-/// What a key does everywhere, also while a value is typed.
-pub fn of_key_always(key: Key) -> Option<Action> {
-    let mut always = TABLE.iter().filter(|entry| entry.reach == Reach::Always);
-    always.find(|entry| entry.has(key)).map(|entry| entry.action)
-}
-
-/// What the footer offers while a pane has the focus, without what is always there (STOP and help): the pause, what
-/// there is only now and then, what belongs to the pane, the rest.
-pub fn offered(pane: Pane) -> impl Iterator<Item = &'static Entry> {
-    let mut shown: Vec<&Entry> = TABLE.iter().filter(|entry| !entry.label.is_empty() && entry.works_in(pane)).collect();
-    shown.retain(|entry| !matches!(entry.action, Action::Runstop | Action::Help));
-    // What the pane has another use for isn't offered under that key.
-    shown.retain(|entry| entry.keys.first().and_then(|key| of_key(key.parse().ok()?, pane)) == Some(entry.action));
-    shown.sort_by_key(|entry| match (entry.action, entry.reach) {
-        (Action::Pause, _) => 0,
-        (Action::ApplyHeld | Action::DropHeld | Action::HeldEdit | Action::GiveBack, _) => 1,
-        (Action::Step, _) => 2,
-        (_, Reach::Panes(_)) => 3,
-        _ => 4,
-    });
-    shown.into_iter()
-}
-
-/// The page docs/keys.md.
-pub fn page() -> String {
-    let mut page = String::from(
-        "# Keys\n\nMade from the table in `src/ui/action.rs`; a test keeps it so.\n\
-         Upper case means with Shift. `?` shows the same on the screen.\n",
-    );
-    for group in Group::ALL {
-        let _ = write!(page, "\n## {}\n\n| key | what it does | where | name |\n|---|---|---|---|\n", group.title());
-        for entry in group.entries() {
-            let keys: Vec<String> = entry.keys.iter().map(|key| format!("`{key}`")).collect();
-            let (keys, place) = (keys.join(" "), place(entry.reach));
-            let _ = writeln!(page, "| {keys} | {} | {place} | {} |", entry.help, entry.id);
+impl Reach {
+    /// In words: `machines, graph`
+    pub fn place(self) -> String {
+        match self {
+            Reach::Always => "everywhere, also while typing".into(),
+            Reach::Screen => "every pane".into(),
+            Reach::Panes(panes) => panes.iter().map(|pane| pane.title()).collect::<Vec<_>>().join(", "),
         }
-    }
-    page
-}
-
-fn place(reach: Reach) -> String {
-    match reach {
-        Reach::Always => "everywhere, also while typing".into(),
-        Reach::Screen => "every pane".into(),
-        Reach::Panes(panes) => panes.iter().map(|pane| pane.title()).collect::<Vec<_>>().join(", "),
     }
 }

@@ -29,12 +29,12 @@ pub use writing::WriteBack;
 
 use self::follow::Follow;
 use self::moment::Moment;
-use super::action;
+use super::action::Action;
 use super::key::Key;
 use super::layout::{Extent, Figure, Pane};
 use super::panes::diagram::Diagram;
 use super::scope::Arrangement;
-use super::theme::Theme;
+use super::settings::Settings;
 use super::tree;
 use super::view::{Choices, Path, ProblemKey, Renames, View};
 use crate::model::{MachineId, Program};
@@ -49,7 +49,7 @@ pub struct Options {
     pub rate: f64,
     /// At the start; a person may choose otherwise.
     pub choices: Choices,
-    pub theme: Theme,
+    pub settings: Settings,
     /// Of the terminal at the start; later sizes come as events.
     pub size: Size,
 }
@@ -307,7 +307,7 @@ impl App {
         self.message = None;
         self.moment = None;
         let key = Key::from(event);
-        if let Some(action) = action::of_key_always(key) {
+        if let Some(action) = self.keys().action_always(key) {
             return self.perform(action);
         }
         match &mut self.overlay {
@@ -315,9 +315,9 @@ impl App {
             Overlay::Help { .. } => self.key_in_help(key),
             Overlay::Held { .. } => self.key_in_held(key),
             Overlay::Breakpoints { .. } => self.key_in_breakpoints(key),
-            Overlay::Nothing => match action::of_key(key, self.focus) {
+            Overlay::Nothing => match self.keys().action(key, self.focus) {
                 Some(action) => self.perform(action),
-                None => self.say(format!("{key} does nothing here; ? lists the keys")),
+                None => self.say(format!("{key} does nothing here; {} lists the keys", self.keys().name(Action::Help))),
             },
         }
     }

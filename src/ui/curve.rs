@@ -1,6 +1,6 @@
 //! Numbers as a curve of bars, the newest at the right. Knows nothing of what they measure.
 
-const BARS: [char; 8] = ['▁', '▂', '▃', '▄', '▅', '▆', '▇', '█'];
+use super::glyphs::BARS;
 
 /// Whether there is anything to draw.
 pub fn moves(numbers: &[f64]) -> bool {
@@ -22,7 +22,7 @@ pub fn rows(numbers: &[f64], rows: usize) -> Vec<String> {
         false => 1,
     };
     let glyph = |height: usize, below: usize| match height.saturating_sub(below) {
-        0 => ' ',
+        0 => " ",
         eighths => BARS[eighths.min(BARS.len()) - 1],
     };
     let row = |row: usize| numbers.iter().map(|&n| glyph(height(n), row * BARS.len())).collect();

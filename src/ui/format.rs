@@ -3,6 +3,7 @@
 use serde_json::{Map, Value};
 use unicode_width::{UnicodeWidthChar, UnicodeWidthStr};
 
+use super::glyphs;
 use super::view::Timeout;
 use crate::runtime::time::Time;
 
@@ -30,7 +31,7 @@ pub fn fit(text: &str, room: u16) -> String {
         short.push(c);
     }
     if room > 0 {
-        short.push('…');
+        short.push_str(glyphs::ELLIPSIS);
     }
     short
 }
@@ -165,7 +166,7 @@ fn marker(value: &Value) -> Option<String> {
     if let Some(what) = fields.get("lua").and_then(Value::as_str) {
         return Some(what.into());
     }
-    fields.get("cut").map(|_| "{…}".into())
+    fields.get("cut").map(|_| format!("{{{}}}", glyphs::ELLIPSIS))
 }
 
 fn lua(value: &Value, number: &dyn Fn(&serde_json::Number) -> String) -> String {
@@ -279,5 +280,5 @@ fn is_silent(value: &Value) -> bool {
 pub fn bar(timeout: Timeout, columns: u16) -> String {
     let full = (timeout.part() * f64::from(columns)).round() as usize;
     let columns = columns as usize;
-    "▮".repeat(full.min(columns)) + &"▯".repeat(columns - full.min(columns))
+    glyphs::FULL.repeat(full.min(columns)) + &glyphs::EMPTY.repeat(columns - full.min(columns))
 }

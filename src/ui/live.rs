@@ -13,8 +13,9 @@ use crossterm::event::{Event as TerminalEvent, KeyCode, KeyModifiers};
 use ratatui::layout::Size;
 
 use super::app::{App, Effect, Event, Options, WriteBack};
-use super::editor::{Launch, Manner, Surroundings};
+use super::editor::{self, Launch, Manner};
 use super::input::{Hold, Input, Received};
+use super::settings::{Settings, Surroundings};
 use super::terminal::Screen;
 use super::theme::Theme;
 use super::view::Choices;
@@ -67,7 +68,7 @@ fn live(setup: Setup, trace: Option<PathBuf>) -> Result<ExitCode, String> {
                 saves: setup.options.saves,
                 on_error: setup.options.on_error,
             },
-            theme: Theme::from_no_color(std::env::var("NO_COLOR").ok().as_deref()),
+            settings: settings(&Surroundings::here()),
             size,
         })
     };
@@ -117,6 +118,11 @@ fn live(setup: Setup, trace: Option<PathBuf>) -> Result<ExitCode, String> {
         Some(why) => Err(why),
         None => Ok(code),
     }
+}
+
+fn settings(surroundings: &Surroundings) -> Settings {
+    let (theme, charset) = (Theme::of(surroundings.palette()), surroundings.charset());
+    Settings { theme, charset, ..Settings::default() }
 }
 
 /// Hands things of one kind on to the loop; when that has ended there is nobody to tell.
@@ -321,7 +327,7 @@ impl Live {
 
     fn open_editor(&mut self, file: &Arc<str>, line: usize, column: usize) {
         let size = self.app.options().size;
-        let launch = match Launch::new(Path::new(&**file), line, column, &Surroundings::here(size)) {
+        let launch = match Launch::new(Path::new(&**file), line, column, &editor::Surroundings::here(size)) {
             Ok(launch) => launch,
             Err(why) => return self.app.notice(why.to_string()),
         };

@@ -1,5 +1,6 @@
 //! A program's machine as the graph to draw: states in source order, the wildcard source last, edges labelled.
 
+use super::glyphs;
 use super::graph::{Edge, EdgeKind, Graph, Nested, Node, NodeKind};
 use crate::model::transition_names::trigger_text;
 use crate::model::{Entry, MachineId, Program, Sources, StateId, Transition, TransitionKind, Trigger};
@@ -82,7 +83,7 @@ pub fn label(program: &Program, transition: &Transition) -> String {
 
 fn shortened(text: &str) -> String {
     match text.char_indices().nth(BLOCK_WIDTH) {
-        Some((end, _)) => format!("{}…", &text[..end]),
+        Some((end, _)) => format!("{}{}", &text[..end], glyphs::ELLIPSIS),
         None => text.to_string(),
     }
 }

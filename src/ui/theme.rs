@@ -6,144 +6,248 @@ use super::graph::EdgeKind;
 use super::view::{Gravity, Mode};
 use crate::runtime::record::{Health, Level};
 
+/// What the colours have to be read on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Palette {
+    #[default]
+    Dark,
+    Light,
+    /// No colours: weight alone tells.
+    Mono,
+}
+
+/// What a style means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Theme {
-    Colours,
-    /// `NO_COLOR`: weight alone tells.
-    Plain,
+pub enum Role {
+    Rule,
+    Title,
+    FocusedTitle,
+    /// The row a person is at, in the pane with the focus.
+    Selected,
+    Active,
+    Fresh,
+    /// Set by hand, and no file has it.
+    Unwritten,
+    Error,
+    Warning,
+    Hint,
+    /// Where the program will pause.
+    Breakpoint,
+    /// An edit that waits to be taken over.
+    Held,
+    Key,
+    Running,
+    Paused,
+    Stopped,
+    Up,
+    Connecting,
+    On,
+    Eps,
+    Ontime,
+    Wildcard,
+    Robot,
+    Trail,
+    Wall,
+}
+
+/// A row of the table.
+#[derive(Clone, Copy, Debug)]
+pub struct Meaning {
+    pub role: Role,
+    /// For configuration.
+    pub id: &'static str,
+    weight: Modifier,
+    dark: Option<Color>,
+    light: Option<Color>,
+}
+
+const PLAIN: Modifier = Modifier::empty();
+const FAINT: Modifier = Modifier::DIM;
+const HEAVY: Modifier = Modifier::BOLD;
+const TURNED: Modifier = Modifier::REVERSED;
+const BADGE: Modifier = HEAVY.union(TURNED);
+
+macro_rules! table {
+    ($($role:ident $id:literal $weight:ident $dark:ident $light:ident;)*) => {
+        /// On light ground yellow, green and cyan can't be read, nor what bold makes of them.
+        pub const TABLE: &[Meaning] = &[$(Meaning {
+            role: Role::$role, id: $id, weight: $weight, dark: table!(@ $dark), light: table!(@ $light),
+        },)*];
+    };
+    (@ None) => { None };
+    (@ $colour:ident) => { Some(Color::$colour) };
+}
+
+table! {
+    Rule "rule" FAINT None None;
+    Title "title" FAINT None None;
+    FocusedTitle "focused-title" HEAVY None None;
+    Selected "selected" TURNED None None;
+    Active "active" HEAVY Green Blue;
+    Fresh "fresh" HEAVY Yellow Magenta;
+    Unwritten "unwritten" PLAIN Yellow Magenta;
+    Error "error" HEAVY Red Red;
+    Warning "warning" PLAIN Yellow Magenta;
+    Hint "hint" FAINT None None;
+    Breakpoint "breakpoint" PLAIN Red Red;
+    Held "held" HEAVY LightBlue Blue;
+    Key "key" HEAVY None None;
+    Running "running" BADGE Green Blue;
+    Paused "paused" BADGE Yellow Magenta;
+    Stopped "stopped" BADGE Red Red;
+    Up "up" PLAIN Green Blue;
+    Connecting "connecting" PLAIN Yellow Magenta;
+    On "on" PLAIN LightBlue Blue;
+    Eps "eps" PLAIN Green DarkGray;
+    Ontime "ontime" PLAIN Yellow Red;
+    Wildcard "wildcard" PLAIN Magenta Magenta;
+    Robot "robot" HEAVY Cyan Blue;
+    Trail "trail" FAINT Cyan Blue;
+    Wall "wall" FAINT None None;
+}
+
+impl Meaning {
+    fn style(&self, palette: Palette) -> Style {
+        let colour = match palette {
+            Palette::Dark => self.dark,
+            Palette::Light => self.light,
+            Palette::Mono => None,
+        };
+        Style { fg: colour, ..Style::new() }.add_modifier(self.weight)
+    }
+}
+
+#[derive(Clone, Debug, PartialEq)]
+pub struct Theme {
+    /// Of each row of the table.
+    styles: Vec<Style>,
+}
+
+impl Default for Theme {
+    fn default() -> Theme {
+        Theme::of(Palette::default())
+    }
 }
 
 impl Theme {
-    /// What a person asked for in the environment: `NO_COLOR`, set and not empty, means no colours.
-    pub fn from_no_color(value: Option<&str>) -> Theme {
-        match value {
-            None | Some("") => Theme::Colours,
-            Some(_) => Theme::Plain,
-        }
+    pub fn of(palette: Palette) -> Theme {
+        Theme { styles: TABLE.iter().map(|meaning| meaning.style(palette)).collect() }
     }
 
-    pub fn normal(self) -> Style {
+    pub fn style(&self, role: Role) -> Style {
+        let rows = TABLE.iter().zip(&self.styles);
+        rows.into_iter().find(|(meaning, _)| meaning.role == role).map_or(Style::new(), |(_, style)| *style)
+    }
+
+    pub fn normal(&self) -> Style {
         Style::new()
     }
 
-    pub fn dim(self) -> Style {
-        Style::new().add_modifier(Modifier::DIM)
+    pub fn dim(&self) -> Style {
+        Style::new().add_modifier(FAINT)
     }
 
-    pub fn bold(self) -> Style {
-        Style::new().add_modifier(Modifier::BOLD)
+    pub fn bold(&self) -> Style {
+        Style::new().add_modifier(HEAVY)
     }
 
-    pub fn rule(self) -> Style {
-        self.dim()
+    pub fn rule(&self) -> Style {
+        self.style(Role::Rule)
     }
 
-    pub fn title(self) -> Style {
-        self.dim()
+    pub fn title(&self) -> Style {
+        self.style(Role::Title)
     }
 
-    pub fn focused_title(self) -> Style {
-        self.bold()
+    pub fn focused_title(&self) -> Style {
+        self.style(Role::FocusedTitle)
     }
 
-    /// The row a person is at, in the pane with the focus.
-    pub fn selected(self) -> Style {
-        Style::new().add_modifier(Modifier::REVERSED)
+    pub fn selected(&self) -> Style {
+        self.style(Role::Selected)
     }
 
-    pub fn active(self) -> Style {
-        self.bold().patch(self.colour(Color::Green))
+    pub fn active(&self) -> Style {
+        self.style(Role::Active)
     }
 
-    pub fn fresh(self) -> Style {
-        self.bold().patch(self.colour(Color::Yellow))
+    pub fn fresh(&self) -> Style {
+        self.style(Role::Fresh)
     }
 
-    /// Set by hand, and no file has it.
-    pub fn unwritten(self) -> Style {
-        self.colour(Color::Yellow)
+    pub fn unwritten(&self) -> Style {
+        self.style(Role::Unwritten)
     }
 
-    pub fn stop(self) -> Style {
-        self.bold().patch(self.colour(Color::Red))
+    pub fn stop(&self) -> Style {
+        self.style(Role::Error)
     }
 
-    /// Where the program will pause.
-    pub fn breakpoint(self) -> Style {
-        self.colour(Color::Red)
+    pub fn breakpoint(&self) -> Style {
+        self.style(Role::Breakpoint)
     }
 
-    /// An edit that waits to be taken over.
-    pub fn held(self) -> Style {
-        self.bold().patch(self.colour(Color::LightBlue))
+    pub fn held(&self) -> Style {
+        self.style(Role::Held)
     }
 
-    pub fn key(self) -> Style {
-        self.bold()
+    pub fn key(&self) -> Style {
+        self.style(Role::Key)
     }
 
-    pub fn mode(self, mode: &Mode) -> Style {
-        let colour = match mode {
-            Mode::Running => Color::Green,
-            Mode::Paused { .. } => Color::Yellow,
-            Mode::Stopped => Color::Red,
-        };
-        let weight = Modifier::BOLD | Modifier::REVERSED;
-        self.colour(colour).add_modifier(weight)
+    pub fn mode(&self, mode: &Mode) -> Style {
+        self.style(match mode {
+            Mode::Running => Role::Running,
+            Mode::Paused { .. } => Role::Paused,
+            Mode::Stopped => Role::Stopped,
+        })
     }
 
-    pub fn health(self, health: Option<Health>) -> Style {
+    pub fn health(&self, health: Option<Health>) -> Style {
         match health {
             None => self.dim(),
-            Some(Health::Up) => self.colour(Color::Green),
-            Some(Health::Connecting) => self.colour(Color::Yellow),
+            Some(Health::Up) => self.style(Role::Up),
+            Some(Health::Connecting) => self.style(Role::Connecting),
             Some(Health::Lost) => self.stop(),
         }
     }
 
-    pub fn transition(self, kind: EdgeKind) -> Style {
-        self.colour(match kind {
-            EdgeKind::On | EdgeKind::Exit => Color::LightBlue,
-            EdgeKind::Eps => Color::Green,
-            EdgeKind::Ontime => Color::Yellow,
-            EdgeKind::Wildcard => Color::Magenta,
+    pub fn transition(&self, kind: EdgeKind) -> Style {
+        self.style(match kind {
+            EdgeKind::On | EdgeKind::Exit => Role::On,
+            EdgeKind::Eps => Role::Eps,
+            EdgeKind::Ontime => Role::Ontime,
+            EdgeKind::Wildcard => Role::Wildcard,
         })
     }
 
-    pub fn gravity(self, gravity: Gravity) -> Style {
-        match gravity {
-            Gravity::Error => self.stop(),
-            Gravity::Warning => self.colour(Color::Yellow),
-            Gravity::Hint => self.dim(),
-        }
+    pub fn gravity(&self, gravity: Gravity) -> Style {
+        self.style(match gravity {
+            Gravity::Error => Role::Error,
+            Gravity::Warning => Role::Warning,
+            Gravity::Hint => Role::Hint,
+        })
     }
 
-    pub fn level(self, level: Level) -> Style {
+    pub fn level(&self, level: Level) -> Style {
         match level {
-            Level::Error => self.stop(),
-            Level::Warn => self.colour(Color::Yellow),
+            Level::Error => self.gravity(Gravity::Error),
+            Level::Warn => self.gravity(Gravity::Warning),
             Level::Info => self.normal(),
             Level::Debug => self.dim(),
         }
     }
 
     /// The painted line and the robot of a world.
-    pub fn robot(self) -> Style {
-        self.bold().patch(self.colour(Color::Cyan))
+    pub fn robot(&self) -> Style {
+        self.style(Role::Robot)
     }
 
-    pub fn trail(self) -> Style {
-        self.colour(Color::Cyan).add_modifier(Modifier::DIM)
+    pub fn trail(&self) -> Style {
+        self.style(Role::Trail)
     }
 
-    pub fn wall(self) -> Style {
-        self.dim()
-    }
-
-    fn colour(self, colour: Color) -> Style {
-        match self {
-            Theme::Colours => Style::new().fg(colour),
-            Theme::Plain => Style::new(),
-        }
+    pub fn wall(&self) -> Style {
+        self.style(Role::Wall)
     }
 }

@@ -4,7 +4,8 @@ use lrp::runtime::command::{BreakAt, Command};
 use lrp::runtime::record::*;
 use lrp::runtime::time::Time;
 use lrp::ui::app::{App, Event, Options as Screen};
-use lrp::ui::theme::Theme;
+use lrp::ui::glyphs::Charset;
+use lrp::ui::settings::Settings;
 use lrp::ui::view::Choices;
 use proptest::prelude::*;
 use ratatui::buffer::Buffer;
@@ -23,10 +24,11 @@ proptest! {
         whats in prop::collection::vec(whats(), 0..40),
         keys in prop::collection::vec(keys(), 0..40),
         sizes in prop::collection::vec((1u16..130, 1u16..50), 1..6),
+        charset in prop::sample::select(vec![Charset::Unicode, Charset::Ascii]),
     ) {
         let size = Size::new(sizes[0].0, sizes[0].1);
-        let options = Screen { file: "a.lrp".into(), rate: 10.0, choices: Choices::default(), theme: Theme::Colours, size };
-        let mut app = App::new(options);
+        let settings = Settings { charset, ..Settings::default() };
+        let mut app = App::new(Screen { file: "a.lrp".into(), rate: 10.0, choices: Choices::default(), settings, size });
         for record in Story::searching().records.iter().take(whats.len() * 8) {
             app.record(record);
         }
@@ -59,7 +61,12 @@ fn every_size_is_drawn() {
 
 fn draw(app: &App, size: Size) {
     let area = Rect::new(0, 0, size.width, size.height);
-    app.paint(area, &mut Buffer::empty(area));
+    let mut buffer = Buffer::empty(area);
+    app.paint(area, &mut buffer);
+    if app.options().settings.charset == Charset::Ascii {
+        let other = buffer.content.iter().find(|cell| !cell.symbol().is_ascii());
+        assert_eq!(other.map(ratatui::buffer::Cell::symbol), None);
+    }
 }
 
 fn keys() -> impl Strategy<Value = &'static str> {

@@ -6,8 +6,10 @@ use std::path::PathBuf;
 use lrp::runtime::command::Command;
 use lrp::runtime::record::{BridgeState, Element, Health, Op, What};
 use lrp::ui::app::{App, Event, Options};
+use lrp::ui::glyphs::Charset;
 use lrp::ui::key::Key;
-use lrp::ui::theme::Theme;
+use lrp::ui::settings::Settings;
+use lrp::ui::theme::{Palette, Theme};
 use lrp::ui::view::Choices;
 use ratatui::Terminal;
 use ratatui::backend::TestBackend;
@@ -20,15 +22,12 @@ use crate::story::{LINE_FOLLOWER, Story, program};
 
 /// The screen of a size after some records.
 pub fn screen(width: u16, height: u16, story: &Story) -> App {
-    let size = Size::new(width, height);
-    let options = Options {
-        file: "line_follower.lrp".into(),
-        rate: 10.0,
-        choices: Choices::default(),
-        theme: Theme::Colours,
-        size,
-    };
-    let mut app = App::new(options);
+    screen_with(Settings::default(), Size::new(width, height), story)
+}
+
+pub fn screen_with(settings: Settings, size: Size, story: &Story) -> App {
+    let (file, choices) = ("line_follower.lrp".into(), Choices::default());
+    let mut app = App::new(Options { file, rate: 10.0, choices, settings, size });
     for record in &story.records {
         app.record(record);
     }
@@ -249,16 +248,22 @@ fn an_edit_that_restarts() {
 
 #[test]
 fn weight_alone_tells_without_colours() {
-    let size = Size::new(80, 24);
-    let mut app = App::new(Options {
-        file: "line_follower.lrp".into(),
-        rate: 10.0,
-        choices: Choices::default(),
-        theme: Theme::Plain,
-        size,
-    });
-    Story::searching().records.iter().for_each(|record| app.record(record));
-    check("plain_80x24", &app);
+    let settings = Settings { theme: Theme::of(Palette::Mono), ..Settings::default() };
+    check("plain_80x24", &screen_with(settings, Size::new(80, 24), &Story::searching()));
+}
+
+#[test]
+fn ascii_is_enough() {
+    let settings = Settings { charset: Charset::Ascii, ..Settings::default() };
+    for (name, width, height) in [("ascii_80x24", 80, 24), ("ascii_40x24", 40, 24), ("ascii_200x60", 200, 60)] {
+        check(name, &screen_with(settings.clone(), Size::new(width, height), &Story::searching()));
+    }
+}
+
+#[test]
+fn light_ground_has_colours_of_its_own() {
+    let settings = Settings { theme: Theme::of(Palette::Light), ..Settings::default() };
+    check("light_80x24", &screen_with(settings, Size::new(80, 24), &Story::searching()));
 }
 
 #[test]

@@ -8,6 +8,7 @@ use lrp::runtime::record::{Element, Level, Log, Op, What};
 use lrp::ui::action;
 use lrp::ui::app::{App, Effect};
 use lrp::ui::key::Key;
+use lrp::ui::keymap::Keymap;
 use lrp::ui::layout::Pane;
 use serde_json::json;
 
@@ -300,8 +301,8 @@ fn every_key_is_written_as_it_is_read_and_means_one_thing_in_a_pane() {
 fn the_page_of_keys_is_made_from_the_table() {
     let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("docs/keys.md");
     if std::env::var_os("UPDATE").is_some() {
-        return fs::write(path, action::page()).expect("the page is written");
+        return fs::write(path, Keymap::default().page()).expect("the page is written");
     }
     let page = fs::read_to_string(&path).unwrap_or_default();
-    assert!(page == action::page(), "docs/keys.md is not what the table says; UPDATE=1 writes it anew");
+    assert!(page == Keymap::default().page(), "docs/keys.md is not what the table says; UPDATE=1 writes it anew");
 }

@@ -113,3 +113,27 @@ fn no_file_is_long() {
     let long = files("src").into_iter().filter(|file| file.text.lines().count() > LONGEST);
     none(long.map(|file| format!("{}: {} lines", file.path.display(), file.text.lines().count())).collect());
 }
+
+/// Lines of the screen's code outside of files and folders for which `breaks` holds.
+fn on_the_screen(outside: &[&str], breaks: impl Fn(&str) -> bool) -> Vec<String> {
+    let files = files("src/ui").into_iter().filter(|file| !outside.iter().any(|own| file.path.starts_with(own)));
+    let lines = files.flat_map(|file| {
+        let broken: Vec<String> = file
+            .code()
+            .filter(|(_, line)| breaks(line))
+            .map(|(number, line)| format!("{}:{number}: {}", file.path.display(), line.trim()))
+            .collect();
+        broken
+    });
+    lines.collect()
+}
+
+#[test]
+fn colours_are_named_in_one_place() {
+    none(on_the_screen(&["src/ui/theme.rs"], |line| line.contains("Color::") || line.contains("style::Color")));
+}
+
+#[test]
+fn every_character_of_the_screen_is_in_a_table() {
+    none(on_the_screen(&["src/ui/glyphs.rs", "src/ui/graph"], |line| !line.is_ascii()));
+}

@@ -41,6 +41,7 @@ mod signals;
 mod stage;
 mod storms;
 mod story;
+mod surroundings;
 mod syntax;
 mod terminal;
 mod tracer;

@@ -36,6 +36,7 @@ impl User {
         command.cwd(folder.path());
         command.env_remove("NO_COLOR");
         command.env("TERM", "xterm-256color");
+        command.env("LC_ALL", "C.UTF-8");
         set.iter().for_each(|(name, value)| command.env(name, value));
         let running = pty.run(command);
         let user = User { pty, running, folder, modes };

@@ -8,6 +8,7 @@ use super::{App, Options, Overlay, Reading};
 use crate::model::{MachineId, Program};
 use crate::runtime::Explain;
 use crate::ui::action::Action;
+use crate::ui::keymap::Keymap;
 use crate::ui::layout::{Layout, Pane, Simulated, Wish};
 use crate::ui::panes::diagram::Diagram;
 use crate::ui::scope::{Arrangement, Listing, Row};
@@ -24,8 +25,12 @@ impl App {
         &self.options
     }
 
-    pub fn theme(&self) -> Theme {
-        self.options.theme
+    pub fn theme(&self) -> &Theme {
+        &self.options.settings.theme
+    }
+
+    pub fn keys(&self) -> &Keymap {
+        &self.options.settings.keys
     }
 
     pub fn focus(&self) -> Pane {
@@ -164,7 +169,7 @@ impl App {
         match &*kept {
             Some((of, diagram)) if *of == key => diagram.clone(),
             _ => {
-                let diagram = Rc::new(Diagram::new(program, machine, area.width, area.height));
+                let diagram = Rc::new(Diagram::new(program, machine, area.as_size(), self.options.settings.charset));
                 *kept = Some((key, diagram.clone()));
                 diagram
             }

@@ -8,7 +8,7 @@ use crate::model::TransitionId;
 use crate::model::transition_names::TransitionNames;
 use crate::runtime::command::{BreakAt, Breaking, Command, OnError};
 use crate::runtime::record::Setter;
-use crate::ui::action::{self, Action};
+use crate::ui::action::Action;
 use crate::ui::key::Key;
 use crate::ui::layout::Pane;
 use crate::ui::panes::detail;
@@ -33,7 +33,8 @@ impl App {
         match self.selected_element() {
             Some((state, Element::State(_))) => Ok(BreakAt::State { state }),
             Some((path, Element::Machine(_))) => {
-                Err(format!("{path} is a machine; select a state, or type a condition (C)"))
+                let key = self.keys().name(Action::BreakWhen);
+                Err(format!("{path} is a machine; select a state, or type a condition ({key})"))
             }
             None => Err("no state is selected".into()),
         }
@@ -102,7 +103,7 @@ impl App {
 
     pub(super) fn key_in_breakpoints(&mut self, key: Key) -> Vec<Effect> {
         let Overlay::Breakpoints { at } = self.overlay else { return Vec::new() };
-        let action = action::of_key(key, Pane::Machines);
+        let action = self.keys().action(key, Pane::Machines);
         match action {
             Some(Action::Runstop | Action::Pause | Action::Step) => {
                 action.map_or_else(Vec::new, |action| self.perform(action))

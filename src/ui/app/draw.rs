@@ -5,7 +5,9 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 
 use super::{App, Overlay};
+use crate::ui::action::Action;
 use crate::ui::format;
+use crate::ui::glyphs;
 use crate::ui::layout::{Layout, Pane};
 use crate::ui::panes::{self, breakpoints, footer, held, help, news, status};
 use crate::ui::pen::Pen;
@@ -20,6 +22,12 @@ impl App {
 
     /// Where the cursor stands, when something is typed.
     pub fn paint(&self, area: Rect, buffer: &mut Buffer) -> Option<Position> {
+        let cursor = self.paint_whole(area, buffer);
+        self.options.settings.charset.lay_over(buffer);
+        cursor
+    }
+
+    fn paint_whole(&self, area: Rect, buffer: &mut Buffer) -> Option<Position> {
         let Some(layout) = self.layout(area) else {
             self.paint_too_small(area, buffer);
             return None;
@@ -50,7 +58,8 @@ impl App {
     }
 
     fn paint_too_small(&self, area: Rect, buffer: &mut Buffer) {
-        let lines = format::wrap("lrp needs 20x5; ! stops the robot", area.width);
+        let stop = self.keys().name(Action::Runstop);
+        let lines = format::wrap(&format!("lrp needs 20x5; {stop} stops the robot"), area.width);
         for (y, line) in (0..area.height).zip(lines) {
             Pen::new(buffer, area, y).put(&line, self.theme().normal());
         }
@@ -64,10 +73,10 @@ fn junction(layout: &Layout, x: u16, y: u16) -> &'static str {
     let right = titles.any(|area| area.x == x + 1);
     let top = layout.panes.iter().all(|(_, area)| area.y >= y);
     match (left, right) {
-        (true, true) if top => "┬",
-        (true, true) => "┼",
-        (true, false) => "┤",
-        (false, true) => "├",
-        (false, false) => "│",
+        (true, true) if top => glyphs::MEETS_BELOW,
+        (true, true) => glyphs::MEETS_ALL,
+        (true, false) => glyphs::MEETS_LEFT,
+        (false, true) => glyphs::MEETS_RIGHT,
+        (false, false) => glyphs::UPRIGHT,
     }
 }

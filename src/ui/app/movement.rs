@@ -109,7 +109,7 @@ impl App {
     }
 
     pub(super) fn go_in_help(&mut self, how: Move) {
-        self.scroll_overlay(how, help::lines(self.options.size.width).len());
+        self.scroll_overlay(how, help::lines(self.keys(), self.options.size.width).len());
     }
 
     /// Lines without a selection only scroll.

@@ -5,7 +5,7 @@ use super::values::Nudge;
 use super::{App, Effect, LogRow, Overlay};
 use crate::runtime::command::Command;
 use crate::syntax::Span;
-use crate::ui::action::{self, Action};
+use crate::ui::action::Action;
 use crate::ui::key::Key;
 use crate::ui::layout::{Extent, Figure, Pane};
 use crate::ui::tree::{self, Element};
@@ -74,7 +74,7 @@ impl App {
     }
 
     pub(super) fn key_in_help(&mut self, key: Key) -> Vec<Effect> {
-        match action::of_key(key, Pane::World) {
+        match self.keys().action(key, Pane::World) {
             Some(Action::Runstop) => return command(Command::Runstop),
             other => match other.and_then(Move::of) {
                 Some(how) => self.go_in_help(how),

@@ -4,14 +4,12 @@ use super::moment::Moment;
 use super::movement::Move;
 use super::{App, Effect, Overlay};
 use crate::runtime::command::{Command, OnEdit, Saves};
-use crate::ui::action::{self, Action};
+use crate::ui::action::Action;
 use crate::ui::format;
 use crate::ui::key::Key;
 use crate::ui::layout::Pane;
 use crate::ui::panes::held;
 use crate::ui::view::{Edit, name};
-
-const NOTHING_HELD: &str = "no edit is held; S holds the next saves";
 
 impl App {
     /// A program was taken over: news, unless it is the first.
@@ -37,9 +35,13 @@ impl App {
     }
 
     pub(super) fn switch_saves(&mut self) -> Vec<Effect> {
+        let key = |action| self.keys().name(action);
+        let (apply, drop, show) = (key(Action::ApplyHeld), key(Action::DropHeld), key(Action::HeldEdit));
         let (mode, said) = match self.view.choices.saves {
-            Saves::Apply => (Saves::Hold, "saves wait for A (apply), X (drop); E lists what they do"),
-            Saves::Hold => (Saves::Apply, "saves count at once from now on"),
+            Saves::Apply => {
+                (Saves::Hold, format!("saves wait for {apply} (apply), {drop} (drop); {show} lists what they do"))
+            }
+            Saves::Hold => (Saves::Apply, "saves count at once from now on".into()),
         };
         self.say(said);
         vec![Effect::Command(Command::Saves { mode })]
@@ -47,10 +49,14 @@ impl App {
 
     pub(super) fn show_held(&mut self) -> Vec<Effect> {
         if self.view.held.is_none() {
-            return self.say(NOTHING_HELD);
+            return self.say(self.nothing_held());
         }
         self.overlay = Overlay::Held { top: 0 };
         Vec::new()
+    }
+
+    fn nothing_held(&self) -> String {
+        format!("no edit is held; {} holds the next saves", self.keys().name(Action::SwitchSaves))
     }
 
     pub(super) fn decide_held(&mut self, command: Command) -> Vec<Effect> {
@@ -58,7 +64,7 @@ impl App {
             self.overlay = Overlay::Nothing;
         }
         if self.view.held.is_none() {
-            return self.say(NOTHING_HELD);
+            return self.say(self.nothing_held());
         }
         vec![Effect::Command(command)]
     }
@@ -66,7 +72,7 @@ impl App {
     /// The list stays while what it tells may still change by the same hand.
     pub(super) fn key_in_held(&mut self, key: Key) -> Vec<Effect> {
         let length = held::lines(self, self.options.size.width).len();
-        match action::of_key(key, Pane::World) {
+        match self.keys().action(key, Pane::World) {
             Some(
                 action @ (Action::Runstop
                 | Action::ApplyHeld

@@ -14,6 +14,7 @@ use crate::model::{BlockId, Program, TransitionId};
 use crate::syntax::Span;
 use crate::ui::app::App;
 use crate::ui::format;
+use crate::ui::glyphs;
 use crate::ui::layout::Pane;
 use crate::ui::pen::Pen;
 use crate::ui::view::Gravity;
@@ -76,7 +77,7 @@ pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
 fn draw_line(app: &App, line: &Line, selected: bool, mut pen: Pen) {
     let (theme, style) = (app.theme(), style(app, line.tone));
     pen.put_right(" ", style).put_right(&line.place, theme.dim());
-    pen.put(if selected { "▸" } else { " " }, theme.bold());
+    pen.put(if selected { glyphs::HERE } else { " " }, theme.bold());
     let Lead { mark, text, tone } = &line.lead;
     match line.tone {
         _ if line.transition.is_some() => {

@@ -1,8 +1,11 @@
 //! A machine's drawing for a place of a certain size, and which of the program's elements each part of the drawing is.
 
+use ratatui::layout::Size;
+
 use super::graph::Spot;
 use crate::model::{MachineId, Program, StateId, TransitionId};
-use crate::ui::graph::{self, Drawing, EdgeKind, Options, Part, Place, Point, Rows};
+use crate::ui::glyphs::Charset;
+use crate::ui::graph::{self, Drawing, EdgeKind, Glyphs, Options, Part, Place, Point, Rows};
 use crate::ui::machine_graph;
 
 #[derive(Clone, Debug, PartialEq)]
@@ -24,11 +27,16 @@ pub struct Edge {
 
 impl Diagram {
     /// As wide as the room, as far as that can be; with a row for what is active inside where that fits the height.
-    pub fn new(program: &Program, machine: MachineId, width: u16, height: u16) -> Diagram {
+    pub fn new(program: &Program, machine: MachineId, size: Size, charset: Charset) -> Diagram {
         let graph = machine_graph::graph(program, machine);
-        let options = |rows| Options { max_width: Some(width), place: Place::Middle, rows, ..Options::default() };
+        let glyphs = match charset {
+            Charset::Unicode => Glyphs::Unicode,
+            Charset::Ascii => Glyphs::Ascii,
+        };
+        let (max_width, place) = (Some(size.width), Place::Middle);
+        let options = |rows| Options { max_width, place, rows, glyphs };
         let two = graph::draw(&graph, &options(Rows::Two));
-        let drawing = if two.height > height { graph::draw(&graph, &options(Rows::One)) } else { two };
+        let drawing = if two.height > size.height { graph::draw(&graph, &options(Rows::One)) } else { two };
         let states = &program[machine].states;
         let edge = |edge: &graph::Edge| Edge { index: edge.id, kind: edge.kind, from: states.get(edge.from).copied() };
         Diagram {

@@ -5,9 +5,11 @@ use ratatui::layout::{Position, Rect};
 use ratatui::style::Style;
 use unicode_width::UnicodeWidthChar;
 
-use crate::ui::action::{self, Action};
+use crate::ui::action::{Action, Entry};
 use crate::ui::app::{App, Goal, Overlay, Text, Typing};
 use crate::ui::format;
+use crate::ui::glyphs;
+use crate::ui::key::Key;
 use crate::ui::pen::Pen;
 use crate::ui::view::{Mode, name};
 
@@ -23,7 +25,9 @@ pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Option<Position> {
     }
     let mut pen = Pen::new(buffer, area, 0);
     pen.put_right(" ", theme.normal());
-    pen.put_right(" STOP", theme.stop()).put_right(if typing.is_some() { "Ctrl-X" } else { "!" }, theme.stop());
+    let keys = app.keys();
+    let stop = if typing.is_some() { keys.name_always(Action::Runstop) } else { keys.name(Action::Runstop) };
+    pen.put_right(" STOP", theme.stop()).put_right(&stop, theme.stop());
     pen.put_right("  ", theme.normal());
     pen.put(" ", theme.normal());
     match (typing, app.message()) {
@@ -34,7 +38,7 @@ pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Option<Position> {
         }
         (None, None) => {
             match app.overlay() {
-                Overlay::Help { .. } => draw_given(app, &[("Esc", "back")], &mut pen),
+                Overlay::Help { .. } => draw_given(app, &[(Action::Back, "back")], &mut pen),
                 Overlay::Held { .. } => draw_given(app, HELD, &mut pen),
                 Overlay::Breakpoints { .. } => draw_given(app, BREAKPOINTS, &mut pen),
                 Overlay::Nothing | Overlay::Typing(_) => draw_keys(app, &mut pen),
@@ -44,13 +48,20 @@ pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Option<Position> {
     }
 }
 
-const HELD: &[(&str, &str)] = &[("Esc", "back"), ("A", "apply"), ("X", "drop"), ("M", "restart or keep")];
-const BREAKPOINTS: &[(&str, &str)] = &[("Esc", "back"), ("B", "clear"), ("X", "clear all")];
+const HELD: &[(Action, &str)] = &[
+    (Action::Back, "back"),
+    (Action::ApplyHeld, "apply"),
+    (Action::DropHeld, "drop"),
+    (Action::SwitchOnEdit, "restart or keep"),
+];
+const BREAKPOINTS: &[(Action, &str)] =
+    &[(Action::Back, "back"), (Action::ToggleBreakpoint, "clear"), (Action::DropHeld, "clear all")];
 
-fn draw_given(app: &App, keys: &[(&str, &str)], pen: &mut Pen) {
-    for (key, label) in keys {
-        if pen.room() >= format::width(key) + 1 + format::width(label) {
-            draw_key(app, key, label, pen);
+fn draw_given(app: &App, keys: &[(Action, &str)], pen: &mut Pen) {
+    for (action, label) in keys {
+        let key = app.keys().name(*action);
+        if pen.room() >= format::width(&key) + 1 + format::width(label) {
+            draw_key(app, &key, label, pen);
         }
     }
 }
@@ -103,9 +114,11 @@ fn after_columns(text: &str, columns: usize) -> String {
 
 fn draw_keys(app: &App, pen: &mut Pen) {
     let theme = app.theme();
-    pen.put_right(" help", theme.dim()).put_right("?", theme.key()).put_right("  ", theme.normal());
-    for entry in action::offered(app.focus()).filter(|entry| app.offers(entry.action)) {
-        let key = entry.keys.first().copied().unwrap_or("");
+    pen.put_right(" help", theme.dim())
+        .put_right(&app.keys().name(Action::Help), theme.key())
+        .put_right("  ", theme.normal());
+    let offered = app.keys().offered(app.focus());
+    for (entry, key) in offered.into_iter().filter(|(entry, _)| app.offers(entry.action)) {
         let (key, label) = (short(key), label(app, entry));
         if pen.room() < format::width(&key) + 1 + format::width(label) {
             return;
@@ -120,16 +133,16 @@ fn draw_key(app: &App, key: &str, label: &str, pen: &mut Pen) {
 }
 
 /// `Space` is a word among words in the footer; `R` and `r` are different keys.
-fn short(key: &str) -> String {
-    match key {
-        "Left" => "←".into(),
-        "Right" => "→".into(),
-        _ if key.chars().count() > 1 => key.to_lowercase(),
-        _ => key.into(),
+fn short(key: Key) -> String {
+    match &*key.to_string() {
+        "Left" => glyphs::LEFT.into(),
+        "Right" => glyphs::RIGHT.into(),
+        long if long.chars().count() > 1 => long.to_lowercase(),
+        single => single.into(),
     }
 }
 
-fn label(app: &App, entry: &action::Entry) -> &'static str {
+fn label(app: &App, entry: &Entry) -> &'static str {
     let running = app.view().mode == Mode::Running && !app.halted();
     match entry.action {
         Action::Pause if !running => "run",

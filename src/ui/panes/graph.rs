@@ -11,6 +11,7 @@ use crate::model::{MachineId, Program, StateId, TransitionId};
 use crate::runtime::record::Setter;
 use crate::ui::app::App;
 use crate::ui::format;
+use crate::ui::glyphs;
 use crate::ui::graph::{Part, Point};
 use crate::ui::layout::Pane;
 use crate::ui::machine_graph;
@@ -28,8 +29,8 @@ pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
     let diagram = app.diagram(program, machine, area);
     let brush = Brush::new(app, program, machine, &diagram);
     brush.draw(area, buffer);
-    let note = if app.follows() { "· follow" } else { "" };
-    let room = area.width.saturating_sub(4 + format::width(note));
+    let note = if app.follows() { format!("{} follow", glyphs::DOT) } else { String::new() };
+    let room = area.width.saturating_sub(4 + format::width(&note));
     Title::new(path_in(&program[machine].path, room), note)
 }
 
@@ -71,7 +72,7 @@ fn path_in(path: &str, room: u16) -> String {
     while let Some((_, inner)) = rest.split_once('/').filter(|_| format::width(rest) + 2 > room) {
         rest = inner;
     }
-    if rest == path { path.into() } else { format!("…/{rest}") }
+    if rest == path { path.into() } else { format!("{}/{rest}", glyphs::ELLIPSIS) }
 }
 
 struct Brush<'a> {

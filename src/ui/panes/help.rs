@@ -7,6 +7,7 @@ use super::sheet;
 use crate::ui::action::Group;
 use crate::ui::app::App;
 use crate::ui::format;
+use crate::ui::keymap::Keymap;
 use crate::ui::pen::Pen;
 
 /// A line of the help.
@@ -18,8 +19,8 @@ pub enum Line {
 }
 
 /// For a screen of this many columns: the groups beside each other where they fit.
-pub fn lines(width: u16) -> Vec<Vec<Line>> {
-    let groups: Vec<Vec<Line>> = Group::ALL.into_iter().map(group).collect();
+pub fn lines(keys: &Keymap, width: u16) -> Vec<Vec<Line>> {
+    let groups: Vec<Vec<Line>> = Group::ALL.into_iter().map(|group| of_group(keys, group)).collect();
     if width < 120 {
         return groups.concat().into_iter().map(|line| vec![line]).collect();
     }
@@ -29,13 +30,13 @@ pub fn lines(width: u16) -> Vec<Vec<Line>> {
     (0..left.len().max(right.len())).map(|i| vec![line(&left, i), line(&right, i)]).collect()
 }
 
-fn group(group: Group) -> Vec<Line> {
-    let keys = group.entries().map(|entry| Line::Key { keys: entry.keys_as_text(), help: entry.help });
+fn of_group(keys: &Keymap, group: Group) -> Vec<Line> {
+    let keys = group.entries().map(|entry| Line::Key { keys: keys.names(entry), help: entry.help });
     [Line::Title(group.title())].into_iter().chain(keys).chain([Line::Empty]).collect()
 }
 
 pub fn draw(app: &App, top: usize, area: Rect, buffer: &mut Buffer) {
-    let rows = lines(area.width);
+    let rows = lines(app.keys(), area.width);
     let inside = sheet::title(app, "keys", (top, rows.len()), area, buffer);
     for (y, row) in (0..inside.height).zip(rows.iter().skip(top)) {
         let columns = area.width / row.len().max(1) as u16;

@@ -5,8 +5,10 @@ use ratatui::layout::Rect;
 
 use super::{Title, draw_nothing};
 use crate::runtime::record::Level;
+use crate::ui::action::Action;
 use crate::ui::app::{App, Filter, LogRow, Shown};
 use crate::ui::format;
+use crate::ui::glyphs;
 use crate::ui::layout::Pane;
 use crate::ui::pen::Pen;
 use crate::ui::view::{Cause, Entry, Gravity, Kind, Problem, ProblemKey, name, owner, within};
@@ -43,21 +45,22 @@ pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
 }
 
 fn nothing(app: &App) -> String {
+    let (filter, only) = (app.keys().name(Action::Filter), app.keys().name(Action::OnlyMachine));
     let nothing = match app.reading().filter {
-        Filter::Everything => "Nothing happened yet",
-        Filter::Transitions => "No transitions yet (v shows all)",
-        Filter::WithoutChanges => "Nothing but transitions (v shows all)",
-        Filter::Warnings => "No warnings or errors (v shows all)",
+        Filter::Everything => "Nothing happened yet".into(),
+        Filter::Transitions => format!("No transitions yet ({filter} shows all)"),
+        Filter::WithoutChanges => format!("Nothing but transitions ({filter} shows all)"),
+        Filter::Warnings => format!("No warnings or errors ({filter} shows all)"),
     };
     match &app.reading().only {
-        Some(machine) => format!("{nothing}, in {} (m shows all machines).", name(machine)),
+        Some(machine) => format!("{nothing}, in {} ({only} shows all machines).", name(machine)),
         None => format!("{nothing}."),
     }
 }
 
 /// Marks the row a reader is at.
 fn draw_place(app: &App, place: Rect, buffer: &mut Buffer) {
-    Pen::new(buffer, place, 0).put("▸", app.theme().bold());
+    Pen::new(buffer, place, 0).put(glyphs::HERE, app.theme().bold());
     if app.focus() == Pane::Log {
         (0..place.height).for_each(|y| _ = Pen::new(buffer, place, y).wash(app.theme().selected()));
     }
@@ -86,7 +89,7 @@ impl Words {
             .filter(|part| !part.is_empty())
             .map(|part| format!("{part}: "))
             .collect();
-        let count = if problem.count > 1 { format!(" ×{}", problem.count) } else { String::new() };
+        let count = if problem.count > 1 { format!(" {}{}", glyphs::TIMES, problem.count) } else { String::new() };
         let mark = if wide { word(problem.gravity) } else { sign(problem.gravity) };
         let taken = 1 + if wide { 8 + format::width(mark) + 2 } else { 2 };
         // A fault that goes on is counted up without its words moving.
@@ -202,13 +205,14 @@ fn draw_log(app: &App, entry: &Entry, level: Level, columns: u16, pen: &mut Pen)
         pen.right_column(&at, format::width(&at).max(5), theme.dim());
     }
     let (word, sign) = match level {
-        Level::Error => ("error  ", "✗ "),
-        Level::Warn => ("warn  ", "! "),
-        Level::Info => ("info  ", "· "),
-        Level::Debug => ("debug  ", "· "),
+        Level::Error => ("error", glyphs::CROSS),
+        Level::Warn => ("warn", "!"),
+        Level::Info => ("info", glyphs::DOT),
+        Level::Debug => ("debug", glyphs::DOT),
     };
     let text = if level == Level::Debug { theme.dim() } else { theme.normal() };
-    pen.put(if columns < TIMED { sign } else { word }, theme.level(level));
+    let (mark, gap) = if columns < TIMED { (sign, " ") } else { (word, "  ") };
+    pen.put(mark, theme.level(level)).put(gap, theme.level(level));
     if !entry.state.is_empty() {
         pen.put(name(&entry.state), text).put(": ", text);
     }
@@ -232,9 +236,9 @@ fn word(gravity: Gravity) -> &'static str {
 
 fn sign(gravity: Gravity) -> &'static str {
     match gravity {
-        Gravity::Error => "✗",
+        Gravity::Error => glyphs::CROSS,
         Gravity::Warning => "!",
-        Gravity::Hint => "·",
+        Gravity::Hint => glyphs::DOT,
     }
 }
 
@@ -274,6 +278,7 @@ fn note(app: &App) -> String {
     }
     let newer = app.view().journal.newest_first().take_while(|entry| entry.number >= reading.since);
     let newer = newer.filter(|entry| reading.shows(entry)).count();
-    let held = if newer > 0 { format!("held, {newer} newer: Esc") } else { "held: Esc".into() };
+    let back = app.keys().name(Action::Back);
+    let held = if newer > 0 { format!("held, {newer} newer: {back}") } else { format!("held: {back}") };
     if filter.is_empty() { held } else { format!("{filter}, {held}") }
 }

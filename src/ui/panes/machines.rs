@@ -8,6 +8,7 @@ use super::{Title, draw_nothing};
 use crate::model::{MachineId, Program, StateId};
 use crate::ui::app::App;
 use crate::ui::format;
+use crate::ui::glyphs;
 use crate::ui::layout::Pane;
 use crate::ui::pen::Pen;
 use crate::ui::tree::{Element, Row};
@@ -44,8 +45,8 @@ fn note(app: &App, rows: &[Row], height: usize) -> String {
         innermost.map(|row| name(&row.path).to_owned())
     };
     match (active(below), active(above)) {
-        (Some(name), _) => format!("● {name} ↓"),
-        (None, Some(name)) => format!("● {name} ↑"),
+        (Some(name), _) => format!("{} {name} {}", glyphs::ACTIVE, glyphs::DOWN),
+        (None, Some(name)) => format!("{} {name} {}", glyphs::ACTIVE, glyphs::UP),
         (None, None) if !below.is_empty() => format!("{} more", below.len()),
         (None, None) => String::new(),
     }
@@ -54,7 +55,7 @@ fn note(app: &App, rows: &[Row], height: usize) -> String {
 fn draw_row(app: &App, program: &Program, row: &Row, mut pen: Pen) {
     let theme = app.theme();
     let selected = app.selected() == Some(&row.path);
-    pen.put(if selected { "▸" } else { " " }, theme.bold());
+    pen.put(if selected { glyphs::HERE } else { " " }, theme.bold());
     pen.column("", row.depth / 2 * 2, theme.normal());
     match row.element {
         Element::Machine(machine) => draw_machine(app, program, machine, &mut pen),
@@ -88,10 +89,10 @@ fn draw_state(app: &App, program: &Program, id: StateId, pen: &mut Pen) {
         false => theme.dim(),
     };
     draw_numbers(app, program, id, pen);
-    pen.put(if active { "● " } else { "  " }, theme.active());
+    pen.put(if active { glyphs::ACTIVE } else { " " }, theme.active()).put(" ", theme.active());
     pen.put(&state.name, style);
     if app.is_folded(&state.path) {
-        pen.put(" …", theme.dim());
+        pen.put(" ", theme.dim()).put(glyphs::ELLIPSIS, theme.dim());
     }
     draw_mark(app, &state.path, pen);
 }
@@ -101,7 +102,7 @@ fn draw_numbers(app: &App, program: &Program, id: StateId, pen: &mut Pen) {
     let (theme, view) = (app.theme(), app.view());
     let state = &program[id];
     let visits = view.states.get(&state.path).map_or(0, |state| state.visits);
-    let visits = if visits == 0 { String::new() } else { format!("×{}", count(visits)) };
+    let visits = if visits == 0 { String::new() } else { format!("{}{}", glyphs::TIMES, count(visits)) };
     let time = time(view, program, id);
     let marked = if view.breaks_at_state(&state.path).is_some() { 2 } else { 0 };
     let spare = |pen: &Pen| pen.room().saturating_sub(format::width(&state.name) + 2 + marked);

@@ -19,6 +19,7 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 
 use super::app::App;
+use super::glyphs;
 use super::layout::Pane;
 use super::pen::Pen;
 
@@ -57,11 +58,11 @@ fn below_title(area: Rect) -> Rect {
 fn draw_title(app: &App, pane: Pane, title: &Title, mut pen: Pen) {
     let theme = app.theme();
     let style = if app.focus() == pane { theme.focused_title() } else { theme.title() };
-    pen.put("─ ", theme.rule()).put_right("─", theme.rule());
+    pen.put(glyphs::RULE, theme.rule()).put(" ", theme.rule()).put_right(glyphs::RULE, theme.rule());
     if !title.note.is_empty() && pen.room() > 24 {
         pen.put_right(" ", style).put_right(&title.note, style).put_right(" ", style);
     }
-    pen.put(&title.text, style).put(" ", style).fill("─", theme.rule());
+    pen.put(&title.text, style).put(" ", style).fill(glyphs::RULE, theme.rule());
 }
 
 /// A sentence where there is nothing else to show.

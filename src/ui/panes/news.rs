@@ -4,8 +4,10 @@ use ratatui::buffer::Buffer;
 use ratatui::layout::Rect;
 use ratatui::style::Style;
 
+use crate::ui::action::Action;
 use crate::ui::app::App;
 use crate::ui::format;
+use crate::ui::glyphs;
 use crate::ui::pen::Pen;
 use crate::ui::view::{Outcome, describe_shortly, name};
 
@@ -21,19 +23,29 @@ pub fn draw(app: &App, place: Rect, buffer: &mut Buffer) {
     let area = Rect { y, height, ..place };
     move_junction(place, y, buffer);
     let mut title = Pen::new(buffer, area, 0);
-    title.put("─ ", theme.rule()).put("saved", theme.fresh()).put(" ", theme.rule()).fill("─", theme.rule());
+    title
+        .put(glyphs::RULE, theme.rule())
+        .put(" ", theme.rule())
+        .put("saved", theme.fresh())
+        .put(" ", theme.rule())
+        .fill(glyphs::RULE, theme.rule());
     for (y, (text, style)) in (1..height).zip(&lines) {
         Pen::new(buffer, area, y).put(" ", Style::reset()).put(text, *style).fill(" ", Style::reset());
     }
 }
 
+/// What becomes of an upright rule where a title no longer meets it from the right.
+const GONE: [(&str, &str); 2] = [(glyphs::MEETS_RIGHT, glyphs::UPRIGHT), (glyphs::MEETS_ALL, glyphs::MEETS_LEFT)];
+/// And where one does now.
+const MET: [(&str, &str); 2] = [(glyphs::UPRIGHT, glyphs::MEETS_RIGHT), (glyphs::MEETS_LEFT, glyphs::MEETS_ALL)];
+
 /// The rule at the left meets the title where that stands now.
 fn move_junction(place: Rect, y: u16, buffer: &mut Buffer) {
     let Some(x) = place.x.checked_sub(1).filter(|_| y < place.y) else { return };
-    for (y, glyphs) in [(place.y, [("├", "│"), ("┼", "┤")]), (y, [("│", "├"), ("┤", "┼")])] {
+    for (y, changes) in [(place.y, GONE), (y, MET)] {
         let there = buffer.cell_mut((x, y)).into_iter();
         there.for_each(|cell| {
-            if let Some((_, now)) = glyphs.into_iter().find(|(was, _)| cell.symbol() == *was) {
+            if let Some((_, now)) = changes.into_iter().find(|(was, _)| cell.symbol() == *was) {
                 cell.set_symbol(now);
             }
         });
@@ -57,10 +69,11 @@ fn lines(app: &App, outcome: &Outcome, room: u16) -> Vec<(String, Style)> {
         add(&format!("and {more} more"), theme.dim());
     }
     let lost: Vec<String> = app.view().lost().map(|(var, value)| format!("{} {value}", name(var))).collect();
+    let key = app.keys().name(Action::GiveBack);
     match lost.len() {
         0 => (),
-        1 => add(&format!("tuned: {} - u gives it back", lost[0]), theme.fresh()),
-        _ => add(&format!("tuned: {} - u gives them back", lost.join(", ")), theme.fresh()),
+        1 => add(&format!("tuned: {} - {key} gives it back", lost[0]), theme.fresh()),
+        _ => add(&format!("tuned: {} - {key} gives them back", lost.join(", ")), theme.fresh()),
     }
     lines
 }

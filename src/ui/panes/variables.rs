@@ -7,9 +7,11 @@ use serde_json::Value;
 
 use super::{Title, draw_nothing};
 use crate::runtime::time::Time;
+use crate::ui::action::Action;
 use crate::ui::app::{App, top_for};
 use crate::ui::curve;
 use crate::ui::format;
+use crate::ui::glyphs;
 use crate::ui::layout::Pane;
 use crate::ui::pen::Pen;
 use crate::ui::scope::{Row, Shares, Way};
@@ -26,10 +28,10 @@ pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
     let listing = app.values();
     if listing.rows.is_empty() {
         let nothing = match app.arrangement().filter.is_empty() {
-            true => "No variables, and nothing from a robot.",
-            false => "Nothing is called so (Esc: all).",
+            true => "No variables, and nothing from a robot.".into(),
+            false => format!("Nothing is called so ({}: all).", app.keys().name(Action::Back)),
         };
-        draw_nothing(app, area, buffer, nothing);
+        draw_nothing(app, area, buffer, &nothing);
     }
     let Shares { fixed, upper: (upper, height), lower: (lower, below) } = listing.shares(usize::from(area.height));
     let at = listing.position(app.selected_value());
@@ -55,7 +57,7 @@ fn draw_row(app: &App, row: &Row, style: Style, mut pen: Pen) {
     let theme = app.theme();
     let names = (pen.room() * 2 / 5).clamp(8, 18);
     let selected = row.path().is_some() && row.path() == app.selected_value();
-    pen.put(if selected { "▸" } else { " " }, theme.bold());
+    pen.put(if selected { glyphs::HERE } else { " " }, theme.bold());
     match row {
         Row::Heading(scope) => {
             pen.put(scope, theme.dim());
@@ -84,13 +86,13 @@ fn draw_row(app: &App, row: &Row, style: Style, mut pen: Pen) {
         }
         Row::Message { name, value, at, way, .. } => {
             match way {
-                Way::Output => _ = pen.put("→", theme.dim()),
+                Way::Output => _ = pen.put(glyphs::RIGHT, theme.dim()),
                 Way::Input => draw_fold(app, row, &mut pen),
             }
             pen.put(name, style).put("  ", theme.normal());
             draw_age(app, *at, &mut pen);
             match way {
-                Way::Output if app.view().t.since(*at) > SENT => pen.put("–", theme.dim()),
+                Way::Output if app.view().t.since(*at) > SENT => pen.put(glyphs::DASH, theme.dim()),
                 _ => pen.put(&format::message(value), theme.normal()),
             };
         }
@@ -123,7 +125,7 @@ fn draw_variable(app: &App, path: &Path, variable: &Variable, pen: &mut Pen) {
             let fresh = variable.is_fresh(app.view().t);
             draw_value(app, value, if fresh { theme.fresh() } else { theme.normal() }, pen);
         }
-        None => _ = pen.column_right("–", VALUE, theme.dim()),
+        None => _ = pen.column_right(glyphs::DASH, VALUE, theme.dim()),
     }
     let room = pen.room().saturating_sub(3);
     let curve = variable.history.sampled(app.view().t, usize::from(room.min(CURVE)));

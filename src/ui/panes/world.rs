@@ -10,6 +10,7 @@ use ratatui::style::Style;
 use super::{Title, draw_nothing};
 use crate::ui::app::App;
 use crate::ui::format;
+use crate::ui::glyphs;
 use crate::ui::layout::Pane;
 use crate::ui::view::World;
 
@@ -44,17 +45,16 @@ pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
 fn place(world: &World) -> String {
     let Some(pose) = world.pose else { return String::new() };
     let degrees = pose.theta.to_degrees().rem_euclid(360.0).round() % 360.0;
-    format!("{:.2} {:.2} m  {}°", pose.x, pose.y, format::number(degrees))
+    format!("{:.2} {:.2} m  {}{}", pose.x, pose.y, format::number(degrees), glyphs::DEGREES)
 }
 
 fn draw_robot(app: &App, world: &World, dots: &Dots, area: Rect, buffer: &mut Buffer) {
-    const ARROWS: [&str; 8] = ["→", "↗", "↑", "↖", "←", "↙", "↓", "↘"];
     let Some(pose) = world.pose else { return };
     let eighth = (pose.theta.rem_euclid(TAU) / TAU * 8.0).round() as usize % 8;
     if let Some((column, row)) = dots.cell(pose.x, pose.y)
         && let Some(cell) = buffer.cell_mut(Position::new(area.x + column, area.y + row))
     {
-        cell.set_symbol(ARROWS[eighth]).set_style(app.theme().robot());
+        cell.set_symbol(glyphs::ARROWS[eighth]).set_style(app.theme().robot());
     }
 }
 
@@ -147,8 +147,7 @@ impl Dots {
             let (column, row) = (i % usize::from(self.columns), i / usize::from(self.columns));
             let at = Position::new(area.x + column as u16, area.y + row as u16);
             if let Some(cell) = buffer.cell_mut(at) {
-                let glyph = char::from_u32(0x2800 + u32::from(bits)).unwrap_or(' ');
-                cell.set_char(glyph).set_style(style(app, ink));
+                cell.set_char(glyphs::dots(bits)).set_style(style(app, ink));
             }
         }
     }

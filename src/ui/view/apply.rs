@@ -1,5 +1,6 @@
 //! The fold: what each record changes in the picture.
 
+use crate::ui::glyphs::RIGHT;
 use serde_json::Value;
 
 use super::mode::is_own_doing;
@@ -105,7 +106,7 @@ impl View {
             self.taken.pop_front();
         }
         self.taken.push_back((t, taken.clone()));
-        let text = format!("{} → {}  {}", name(&taken.from), name(&taken.to), taken.trigger);
+        let text = format!("{} {RIGHT} {}  {}", name(&taken.from), name(&taken.to), taken.trigger);
         let state = format!("{}/{}", taken.machine, name(&taken.to));
         let cause = self.transition(taken);
         let place = cause.and_then(|cause| self.place_of(cause));

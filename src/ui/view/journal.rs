@@ -1,5 +1,6 @@
 //! What happened, in order, each entry with a number of its own, so that a reader's place holds still while entries come and go.
 
+use crate::ui::glyphs::{RIGHT, TIMES};
 use std::collections::VecDeque;
 
 use super::{Path, name};
@@ -76,10 +77,10 @@ impl Journal {
         });
         if let Some((text, hand)) = known {
             (hand.times, hand.last) = (hand.times + 1, t);
-            *text = format!("{} {} → {to} (×{})", name(var), hand.before, hand.times);
+            *text = format!("{} {} {RIGHT} {to} ({TIMES}{})", name(var), hand.before, hand.times);
             return;
         }
-        let text = format!("{} {from} → {to}", name(var));
+        let text = format!("{} {from} {RIGHT} {to}", name(var));
         let hand = Hand { var: var.clone(), before: from.into(), times: 1, last: t };
         self.add(t, Kind::Hand(hand), text, "".into(), None);
     }

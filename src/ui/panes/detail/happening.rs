@@ -6,6 +6,7 @@ use crate::model::transition_names::trigger_text;
 use crate::syntax::Source;
 use crate::ui::app::LogRow;
 use crate::ui::format;
+use crate::ui::glyphs;
 use crate::ui::view::{Cause, Kind, Problem};
 
 impl Page<'_> {
@@ -84,7 +85,7 @@ impl Page<'_> {
         let Some(source) = source.filter(|_| !problem.is_of_rejected_text()) else { return };
         let text = source.text[source.line_range(key.line)].replace('\t', " ");
         let indent = text.chars().count() - text.trim_start().chars().count();
-        let number = format!("{} │ ", key.line);
+        let number = format!("{} {} ", key.line, glyphs::UPRIGHT);
         let room = usize::from(self.width).saturating_sub(number.chars().count());
         let at = key.column.saturating_sub(1);
         let from = indent.min(at).max((at + 2).saturating_sub(room));

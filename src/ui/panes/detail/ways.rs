@@ -7,6 +7,7 @@ use crate::model::ways::{guard_block, ways_out};
 use crate::model::{Program, Sources, StateId, TransitionId, TransitionKind, Trigger};
 use crate::runtime::record::{Answer, Way};
 use crate::ui::format;
+use crate::ui::glyphs;
 use crate::ui::panes::breakpoints::mark;
 use crate::ui::view::Gravity;
 
@@ -31,7 +32,7 @@ impl Page<'_> {
         let target = &transition.target_name;
         let room = usize::from(targets - format::width(target));
         let name = transition.name.as_ref().map_or(String::new(), |name| format!("  {name}"));
-        let text = format!("→ {target}{:room$}  {}{name}", "", cause(program, id));
+        let text = format!("{} {target}{:room$}  {}{name}", glyphs::RIGHT, "", cause(program, id));
         let place = place(program, transition.span);
         let mark = self.app.view().breaks_at_transition(id).map_or(" ", mark);
         let (answer, tone) = found.map_or((String::new(), Tone::Aside), |found| self.answer(program, id, found));
@@ -58,7 +59,7 @@ impl Page<'_> {
             (Answer::False, None) => ("false".to_string(), Tone::Text),
             (Answer::Error | Answer::NotBoolean, _) => ("error".to_string(), Tone::Gravity(Gravity::Error)),
             (Answer::NoMessage, _) => ("waits".to_string(), Tone::Aside),
-            (Answer::Unseen, None) => ("–".to_string(), Tone::Aside),
+            (Answer::Unseen, None) => (glyphs::DASH.to_string(), Tone::Aside),
         }
     }
 
