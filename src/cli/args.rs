@@ -13,6 +13,7 @@ use crate::session::engine_thread::Pacing;
 use crate::session::live::Setup;
 use crate::session::pace::Rate;
 use crate::session::trace::Clock;
+use crate::ui::pointer::Mouse;
 
 /// Live Robot Programming: state machines that change while they run.
 ///
@@ -25,13 +26,13 @@ pub struct Args {
     #[command(flatten)]
     live: Option<RunArgs>,
     #[command(flatten)]
-    saves: SavesArgs,
+    screen: ScreenArgs,
 }
 
 impl Args {
     pub fn task(self) -> Task {
-        let Args { task, live, saves } = self;
-        task.or(live.map(|run| Task::Live(LiveArgs { run, saves }))).expect("clap asks for one of them")
+        let Args { task, live, screen } = self;
+        task.or(live.map(|run| Task::Live(LiveArgs { run, screen }))).expect("clap asks for one of them")
     }
 }
 
@@ -84,14 +85,17 @@ pub struct LiveArgs {
     #[command(flatten)]
     pub run: RunArgs,
     #[command(flatten)]
-    saves: SavesArgs,
+    screen: ScreenArgs,
 }
 
 #[derive(clap::Args)]
-struct SavesArgs {
+struct ScreenArgs {
     /// Hold every save until a key applies or drops it
     #[arg(long, action = ArgAction::SetTrue)]
     hold: bool,
+    /// Leave the mouse to the terminal, which selects text with it
+    #[arg(long, action = ArgAction::SetTrue)]
+    no_mouse: bool,
 }
 
 #[derive(clap::Args)]
@@ -170,8 +174,12 @@ pub enum GraphFormat {
 impl LiveArgs {
     pub fn setup(&self) -> Setup {
         let setup = self.run.setup();
-        let saves = if self.saves.hold { Saves::Hold } else { Saves::Apply };
+        let saves = if self.screen.hold { Saves::Hold } else { Saves::Apply };
         Setup { options: Options { saves, ..setup.options }, ..setup }
+    }
+
+    pub fn mouse(&self) -> Mouse {
+        if self.screen.no_mouse { Mouse::Terminals } else { Mouse::Ours }
     }
 }
 

@@ -21,7 +21,7 @@ pub fn main() -> ExitCode {
         Err(error) => return wrong(&error),
     };
     match args.task() {
-        Task::Live(live) => crate::ui::live::run(live.setup(), live.run.trace),
+        Task::Live(live) => crate::ui::live::run(live.setup(), live.run.trace.clone(), live.mouse()),
         Task::Run(run) => crate::session::headless::run(run.setup(), run.trace),
         Task::Check { explain: Some(code), .. } => explain::explain(&code),
         Task::Check { files, format, .. } => check::check(&files, format),

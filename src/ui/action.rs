@@ -52,6 +52,17 @@ pub enum Action {
     First,
     Last,
     ToggleWorld,
+    ToggleSource,
+    ScrollLeft,
+    ScrollRight,
+    Menu,
+    SwitchMouse,
+    Hide,
+    ShowAll,
+    Narrower,
+    Wider,
+    Shorter,
+    Taller,
     Zoom,
     Filter,
     OnlyMachine,
@@ -85,7 +96,7 @@ pub enum Group {
 }
 
 /// A row of the table.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Entry {
     pub action: Action,
     /// For configuration: lower case with hyphens.
@@ -101,8 +112,12 @@ pub struct Entry {
 }
 
 const STATES: Reach = Reach::Panes(&[Pane::Machines, Pane::Graph]);
+/// Where a state can be selected.
+const PLACES: Reach = Reach::Panes(&[Pane::Machines, Pane::Graph, Pane::Source]);
+const SOURCE: Reach = Reach::Panes(&[Pane::Source]);
 const TREE: Reach = Reach::Panes(&[Pane::Machines]);
 const VALUES: Reach = Reach::Panes(&[Pane::Variables]);
+const LINES: Reach = Reach::Panes(&[Pane::Log, Pane::Source]);
 const LOG: Reach = Reach::Panes(&[Pane::Log]);
 
 macro_rules! table {
@@ -124,8 +139,8 @@ table! {
     Action::Step, "step", ["s"], "step", "make one step; while it runs, pause", Program, Reach::Screen;
     Action::Faster, "faster", ["+", "="], "", "more steps a second", Program, Reach::Screen;
     Action::Slower, "slower", ["-"], "", "fewer steps a second", Program, Reach::Screen;
-    Action::TransitionTo, "transition-to", ["t"], "go to state", "go to the selected state: its actions run", Program, STATES;
-    Action::JumpTo, "jump-to", ["J"], "jump", "jump to the selected state: no action runs", Program, STATES;
+    Action::TransitionTo, "transition-to", ["t"], "go to state", "go to the selected state: its actions run", Program, PLACES;
+    Action::JumpTo, "jump-to", ["J"], "jump", "jump to the selected state: no action runs", Program, PLACES;
     Action::Restart, "restart", ["Ctrl-R"], "", "restart the program from scratch", Program, Reach::Screen;
 
     Action::SwitchOnEdit, "on-edit", ["M"], "", "edits of active states: restart, or keep", Edits, Reach::Screen;
@@ -158,9 +173,11 @@ table! {
     Action::First, "first", ["Home", "g"], "", "the first row; in the log the newest", Moving, Reach::Screen;
     Action::Last, "last", ["End", "G"], "", "the last row", Moving, Reach::Screen;
     Action::Into, "into", ["Enter"], "", "into the nested machine", Moving, STATES;
-    Action::OutOf, "out-of", ["Backspace"], "", "out to the enclosing state", Moving, STATES;
+    Action::OutOf, "out-of", ["Backspace"], "", "out to the enclosing state", Moving, PLACES;
     Action::Unfold, "unfold", ["Right", "l"], "", "show what is inside", Moving, TREE;
     Action::Fold, "fold", ["Left", "h"], "", "hide what is inside, then go out", Moving, TREE;
+    Action::ScrollLeft, "scroll-left", ["Left", "h"], "", "what is left of the text seen", Moving, SOURCE;
+    Action::ScrollRight, "scroll-right", ["Right", "l"], "", "what is right of the text seen", Moving, SOURCE;
     Action::Follow, "follow", ["f"], "", "follow the innermost change, or hold still", Moving, Reach::Screen;
 
     Action::NextPane, "next-pane", ["Tab"], "", "the next pane", Looking, Reach::Screen;
@@ -170,20 +187,30 @@ table! {
     Action::Focus(Pane::Variables), "variables", ["3"], "", "the variables", Looking, Reach::Screen;
     Action::Focus(Pane::Log), "log", ["4"], "", "the log", Looking, Reach::Screen;
     Action::Focus(Pane::World), "world", ["5"], "", "the simulated world", Looking, Reach::Screen;
+    Action::Focus(Pane::Source), "source", ["6"], "", "the program's text", Looking, Reach::Screen;
     Action::WhyNot, "why-not", ["y"], "why", "why not: what each way out of the state waits for, and back", Looking, Reach::Screen;
     Action::ToggleWorld, "toggle-world", ["w"], "world", "the world for the drawing, and back", Looking, Reach::Screen;
+    Action::ToggleSource, "toggle-source", ["c"], "source", "the program's text for the drawing, and back", Looking, Reach::Screen;
     Action::Inspect, "inspect", ["i"], "inspect", "all about what is selected, and back", Looking, Reach::Screen;
     Action::Zoom, "zoom", ["z"], "", "the focused pane alone, and back", Looking, Reach::Screen;
+    Action::Menu, "menu", ["a"], "menu", "what can be done with what is selected", Looking, Reach::Screen;
+    Action::Narrower, "narrower", ["[", "Alt-Left"], "", "the focused pane narrower", Looking, Reach::Screen;
+    Action::Wider, "wider", ["]", "Alt-Right"], "", "the focused pane wider", Looking, Reach::Screen;
+    Action::Shorter, "shorter", ["{", "Alt-Up"], "", "the focused pane shorter", Looking, Reach::Screen;
+    Action::Taller, "taller", ["}", "Alt-Down"], "", "the focused pane taller", Looking, Reach::Screen;
+    Action::Hide, "hide", ["x"], "", "hide the focused pane; its key shows it again", Looking, Reach::Screen;
+    Action::ShowAll, "show-all", ["0"], "", "all panes, as large as usual", Looking, Reach::Screen;
     Action::Filter, "filter", ["v"], "filter", "the log: all, transitions, the rest, warnings", Looking, LOG;
     Action::OnlyMachine, "only-machine", ["m"], "", "the log: only the selected machine, or all", Looking, LOG;
     Action::OpenEditor, "open-editor", ["o"], "open", "open your editor at the selected line", Looking, Reach::Screen;
-    Action::OpenEditor, "open-editor-at-log", ["Enter"], "", "open your editor at the line", Looking, LOG;
+    Action::OpenEditor, "open-editor-at-log", ["Enter"], "", "open your editor at the line", Looking, LINES;
     Action::Back, "back", ["Esc"], "", "leave: typing, help, full screen, detail", Looking, Reach::Screen;
 
     Action::Help, "help", ["?"], "help", "this help", Lrp, Reach::Screen;
     Action::Quit, "quit", ["q"], "", "stop the robot and quit", Lrp, Reach::Screen;
     Action::Quit, "quit-always", ["Ctrl-C"], "", "stop the robot and quit, also while typing", Lrp, Reach::Always;
     Action::Suspend, "suspend", ["Ctrl-Z"], "", "stop the robot and go to the shell", Lrp, Reach::Always;
+    Action::SwitchMouse, "mouse", ["T"], "", "the mouse for lrp, or to select the terminal's text", Lrp, Reach::Screen;
     Action::Redraw, "redraw", ["Ctrl-L"], "", "draw the screen afresh", Lrp, Reach::Always;
 }
 
@@ -229,6 +256,11 @@ impl Entry {
     pub fn default_keys(&self) -> Vec<Key> {
         self.keys.iter().filter_map(|text| text.parse().ok()).collect()
     }
+}
+
+/// The first row that does this.
+pub fn entry(action: Action) -> Option<&'static Entry> {
+    TABLE.iter().find(|entry| entry.action == action)
 }
 
 impl Reach {

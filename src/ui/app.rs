@@ -2,14 +2,19 @@
 //! Knows nothing of threads, the clock or how a terminal is set up.
 
 mod answers;
+mod arranging;
 mod breaking;
 mod draw;
 mod follow;
+mod menu;
 mod moment;
+mod mouse;
 mod movement;
 mod perform;
 mod reading;
 mod saves;
+mod scroll;
+mod source;
 mod typing;
 mod values;
 mod writing;
@@ -22,17 +27,23 @@ use std::sync::Arc;
 use crossterm::event::{KeyEvent, KeyEventKind};
 use ratatui::layout::Size;
 
-pub use movement::top_for;
 pub use reading::{Filter, LogRow, Reading, Shown};
+pub use scroll::top_for;
+pub use source::{TextLine, Written};
 pub use typing::{Goal, Text, Typing};
 pub use writing::WriteBack;
 
 use self::follow::Follow;
 use self::moment::Moment;
+use self::scroll::Scroll;
+use self::source::Cursor;
 use super::action::Action;
+use super::ink::Inked;
 use super::key::Key;
-use super::layout::{Extent, Figure, Pane};
+use super::layout::{Chosen, Divide, Extent, Figure, Pane};
+use super::menu::Menu;
 use super::panes::diagram::Diagram;
+use super::pointer::{Mouse, Pointer};
 use super::scope::Arrangement;
 use super::settings::Settings;
 use super::tree;
@@ -58,6 +69,7 @@ pub struct Options {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Event {
     Key(KeyEvent),
+    Pointer(Pointer),
     Resize(Size),
 }
 
@@ -77,6 +89,8 @@ pub enum Effect {
     /// After the robot was stopped.
     Suspend,
     Redraw,
+    /// Whose the mouse is from now on.
+    Mouse(Mouse),
 }
 
 pub struct App {
@@ -85,6 +99,9 @@ pub struct App {
     focus: Pane,
     figure: Figure,
     extent: Extent,
+    chosen: Chosen,
+    /// What the mouse has hold of.
+    dragged: Option<Divide>,
     /// The pane whose selection the detail tells of.
     subject: Pane,
     /// The machine or state a person is at.
@@ -117,12 +134,16 @@ pub struct App {
     fault: Option<(u64, ProblemKey)>,
     /// The line of the detail a person is at.
     detail_at: usize,
-    /// First rows shown.
-    tree_top: usize,
-    values_top: usize,
-    detail_top: usize,
+    /// Where a person is in the program's text, if they went there.
+    cursor: Option<Cursor>,
+    source_left: u16,
+    source_scroll: Scroll,
+    tree_scroll: Scroll,
+    values_scroll: Scroll,
+    detail_scroll: Scroll,
     dirty: bool,
     diagram: RefCell<Option<(DiagramKey, Rc<Diagram>)>>,
+    inked: RefCell<Option<(Arc<str>, Rc<Inked>)>>,
 }
 
 /// What a drawing depends on: which program, which machine, how much room.
@@ -144,6 +165,8 @@ pub enum Overlay {
     Breakpoints {
         at: usize,
     },
+    /// What can be done with what is selected.
+    Menu(Menu),
 }
 
 /// A command that had no effect comes back as an error from nowhere in the program.
@@ -161,6 +184,8 @@ impl App {
             focus: Pane::Machines,
             figure: Figure::Graph,
             extent: Extent::Shared,
+            chosen: Chosen::default(),
+            dragged: None,
             subject: Pane::Machines,
             selected: None,
             provisional: true,
@@ -179,11 +204,15 @@ impl App {
             moment: None,
             fault: None,
             detail_at: 0,
-            tree_top: 0,
-            values_top: 0,
-            detail_top: 0,
+            cursor: None,
+            source_left: 0,
+            source_scroll: Scroll::default(),
+            tree_scroll: Scroll::default(),
+            values_scroll: Scroll::default(),
+            detail_scroll: Scroll::default(),
             dirty: true,
             diagram: RefCell::new(None),
+            inked: RefCell::new(None),
         }
     }
 
@@ -221,6 +250,7 @@ impl App {
         let effects = match event {
             Event::Key(key) if key.kind == KeyEventKind::Release => return Vec::new(),
             Event::Key(key) => self.key(key),
+            Event::Pointer(pointer) => self.point(pointer),
             Event::Resize(size) => {
                 self.options.size = size;
                 Vec::new()
@@ -315,6 +345,7 @@ impl App {
             Overlay::Help { .. } => self.key_in_help(key),
             Overlay::Held { .. } => self.key_in_held(key),
             Overlay::Breakpoints { .. } => self.key_in_breakpoints(key),
+            Overlay::Menu(_) => self.key_in_menu(key),
             Overlay::Nothing => match self.keys().action(key, self.focus) {
                 Some(action) => self.perform(action),
                 None => self.say(format!("{key} does nothing here; {} lists the keys", self.keys().name(Action::Help))),

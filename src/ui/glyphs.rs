@@ -21,9 +21,14 @@ table! {
     RULE "─" "-";
     UPRIGHT "│" "|";
     MEETS_BELOW "┬" "+";
+    MEETS_ABOVE "┴" "+";
     MEETS_ALL "┼" "+";
     MEETS_LEFT "┤" "+";
     MEETS_RIGHT "├" "+";
+    TOP_LEFT "┌" "+";
+    TOP_RIGHT "┐" "+";
+    BOTTOM_LEFT "└" "+";
+    BOTTOM_RIGHT "┘" "+";
     HERE "▸" ">";
     ACTIVE "●" "*";
     BREAK "◆" "@";

@@ -15,6 +15,7 @@ use ratatui::layout::Size;
 use super::app::{App, Effect, Event, Options, WriteBack};
 use super::editor::{self, Launch, Manner};
 use super::input::{Hold, Input, Received};
+use super::pointer::{Hand, Mouse};
 use super::settings::{Settings, Surroundings};
 use super::terminal::Screen;
 use super::theme::Theme;
@@ -39,8 +40,8 @@ enum Happened {
 }
 
 /// Exit code 0: quit, terminated or hung up; 1: it couldn't begin or failed; 130: interrupted.
-pub fn run(setup: Setup, trace: Option<PathBuf>) -> ExitCode {
-    match live(setup, trace) {
+pub fn run(setup: Setup, trace: Option<PathBuf>, mouse: Mouse) -> ExitCode {
+    match live(setup, trace, mouse) {
         Ok(code) => code,
         Err(why) => {
             let _ = writeln!(io::stderr(), "lrp: {why}");
@@ -49,7 +50,7 @@ pub fn run(setup: Setup, trace: Option<PathBuf>) -> ExitCode {
     }
 }
 
-fn live(setup: Setup, trace: Option<PathBuf>) -> Result<ExitCode, String> {
+fn live(setup: Setup, trace: Option<PathBuf>, mouse: Mouse) -> Result<ExitCode, String> {
     Screen::check().map_err(|error| error.to_string())?;
     if trace.as_deref() == Some(Path::new("-")) {
         return Err(
@@ -68,7 +69,7 @@ fn live(setup: Setup, trace: Option<PathBuf>) -> Result<ExitCode, String> {
                 saves: setup.options.saves,
                 on_error: setup.options.on_error,
             },
-            settings: settings(&Surroundings::here()),
+            settings: Settings { mouse, ..settings(&Surroundings::here()) },
             size,
         })
     };
@@ -79,13 +80,14 @@ fn live(setup: Setup, trace: Option<PathBuf>) -> Result<ExitCode, String> {
     let app = app(size);
     let session = Session::start(setup, send(&happened, Happened::News)).map_err(|why| why.to_string())?;
     let stop = session.commands().clone();
-    let screen = Screen::enter(move || stop.halt()).map_err(|error| error.to_string())?;
+    let screen = Screen::enter(mouse, move || stop.halt()).map_err(|error| error.to_string())?;
     let input = Input::read(send(&happened, Happened::Terminal)).map_err(|error| error.to_string())?;
     let mut live = Live {
         app,
         screen,
         session,
         input,
+        hand: Hand::default(),
         trace,
         happened,
         writing: Vec::new(),
@@ -139,6 +141,7 @@ struct Live {
     screen: Screen,
     session: Session,
     input: Input,
+    hand: Hand,
     trace: Option<Trace>,
     happened: Sender<Happened>,
     /// Files that are being written.
@@ -268,6 +271,10 @@ impl Live {
         let event = match event {
             TerminalEvent::Key(key) => Event::Key(key),
             TerminalEvent::Resize(width, height) => Event::Resize(Size { width, height }),
+            TerminalEvent::Mouse(mouse) => match self.hand.read(mouse, Instant::now()) {
+                Some(pointer) => Event::Pointer(pointer),
+                None => return Next::Go,
+            },
             _ => return Next::Go,
         };
         let interrupts = matches!(event, Event::Key(key) if key.code == KeyCode::Char('c') && key.modifiers == KeyModifiers::CONTROL);
@@ -297,6 +304,11 @@ impl Live {
                 self.session.commands().send(Command::Runstop);
                 if let Err(error) = self.screen.suspend() {
                     self.app.notice(format!("can't be suspended: {error}"));
+                }
+            }
+            Effect::Mouse(mouse) => {
+                if let Err(error) = self.screen.set_mouse(mouse) {
+                    return Next::End(self.terminal_gone(&error));
                 }
             }
             Effect::Redraw => {

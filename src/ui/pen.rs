@@ -32,6 +32,11 @@ impl<'a> Pen<'a> {
         self.row.x + self.left
     }
 
+    /// The column of the screen before which is written next from the right.
+    pub fn end(&self) -> u16 {
+        self.row.x + self.right
+    }
+
     pub fn put(&mut self, text: &str, style: Style) -> &mut Self {
         let text = fit(text, self.room());
         self.write(self.left, &text, style);

@@ -1,7 +1,8 @@
-//! What a person may want otherwise, whatever the program: keys, colours, characters.
+//! What a person may want otherwise, whatever the program: keys, colours, characters, whose the mouse is.
 
 use super::glyphs::Charset;
 use super::keymap::Keymap;
+use super::pointer::Mouse;
 use super::theme::{Palette, Theme};
 
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -9,6 +10,7 @@ pub struct Settings {
     pub keys: Keymap,
     pub theme: Theme,
     pub charset: Charset,
+    pub mouse: Mouse,
 }
 
 /// What the environment tells of the terminal.

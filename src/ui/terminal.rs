@@ -2,6 +2,7 @@
 //! Knows nothing of what is drawn.
 
 use std::backtrace::{Backtrace, BacktraceStatus};
+use std::fmt;
 use std::fs::File;
 use std::io::{self, IsTerminal, Write};
 use std::os::fd::AsFd;
@@ -10,6 +11,7 @@ use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::thread::{self, ThreadId};
 
+use crossterm::Command;
 use crossterm::cursor::{Hide, Show};
 use crossterm::event::DisableBracketedPaste;
 use crossterm::execute;
@@ -17,6 +19,7 @@ use crossterm::style::ResetColor;
 use crossterm::terminal::{EnterAlternateScreen, LeaveAlternateScreen, disable_raw_mode, enable_raw_mode};
 use ratatui::{Frame, Terminal};
 
+use super::pointer::Mouse;
 use super::quiet::Quiet;
 use crate::session::signals;
 
@@ -26,6 +29,24 @@ pub struct Screen {
     out: File,
     shared: Arc<Shared>,
     earlier_hook: Arc<Hook>,
+    mouse: Mouse,
+}
+
+/// Clicks, drags and the wheel are told, in any column; moves without a button are not, for they would wake us all the time.
+struct TellOfMouse;
+
+impl Command for TellOfMouse {
+    fn write_ansi(&self, f: &mut impl fmt::Write) -> fmt::Result {
+        f.write_str("\x1b[?1000h\x1b[?1002h\x1b[?1006h")
+    }
+}
+
+struct KeepMouse;
+
+impl Command for KeepMouse {
+    fn write_ansi(&self, f: &mut impl fmt::Write) -> fmt::Result {
+        f.write_str("\x1b[?1006l\x1b[?1002l\x1b[?1000l")
+    }
 }
 
 type Hook = dyn Fn(&PanicHookInfo<'_>) + Send + Sync;
@@ -50,7 +71,7 @@ impl Screen {
 
     /// Takes the terminal over. Should this thread panic, the terminal is given back, then `stop_the_robot` is called,
     /// then the panic is explained. Fails where there is no terminal, in a sentence for the user.
-    pub fn enter(stop_the_robot: impl Fn() + Send + Sync + 'static) -> io::Result<Screen> {
+    pub fn enter(mouse: Mouse, stop_the_robot: impl Fn() + Send + Sync + 'static) -> io::Result<Screen> {
         Self::check()?;
         let out = File::from(io::stdout().as_fd().try_clone_to_owned()?);
         let terminal = Terminal::new(Quiet::new(out.try_clone()?))?;
@@ -61,7 +82,7 @@ impl Screen {
             kept: Mutex::default(),
         });
         let earlier_hook = install_hook(&shared);
-        let mut screen = Screen { terminal, out, shared, earlier_hook };
+        let mut screen = Screen { terminal, out, shared, earlier_hook, mouse };
         screen.resume()?;
         Ok(screen)
     }
@@ -87,8 +108,22 @@ impl Screen {
         disable_raw_mode()?;
         enable_raw_mode()?;
         execute!(self.out, EnterAlternateScreen, Hide, DisableBracketedPaste)?;
+        self.tell_of_mouse()?;
         self.terminal.backend_mut().forget();
         self.terminal.clear()
+    }
+
+    /// From now on, also when the terminal is taken again.
+    pub fn set_mouse(&mut self, mouse: Mouse) -> io::Result<()> {
+        self.mouse = mouse;
+        self.tell_of_mouse()
+    }
+
+    fn tell_of_mouse(&mut self) -> io::Result<()> {
+        match self.mouse {
+            Mouse::Ours => execute!(self.out, TellOfMouse),
+            Mouse::Terminals => execute!(self.out, KeepMouse),
+        }
     }
 
     /// Ctrl-Z: gives the terminal back, stops the process group, and takes it again once continued.
@@ -118,7 +153,7 @@ impl Shared {
             return;
         }
         let _ = disable_raw_mode();
-        let _ = execute!(out, ResetColor, Show, LeaveAlternateScreen);
+        let _ = execute!(out, KeepMouse, ResetColor, Show, LeaveAlternateScreen);
         for panic in self.kept.lock().unwrap_or_else(PoisonError::into_inner).drain(..) {
             say(&panic);
         }

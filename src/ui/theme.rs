@@ -48,6 +48,9 @@ pub enum Role {
     Robot,
     Trail,
     Wall,
+    Comment,
+    /// What is Lua in a program's text.
+    Lua,
 }
 
 /// A row of the table.
@@ -104,6 +107,8 @@ table! {
     Robot "robot" HEAVY Cyan Blue;
     Trail "trail" FAINT Cyan Blue;
     Wall "wall" FAINT None None;
+    Comment "comment" FAINT None None;
+    Lua "lua" PLAIN Cyan Blue;
 }
 
 impl Meaning {
@@ -189,6 +194,14 @@ impl Theme {
 
     pub fn held(&self) -> Style {
         self.style(Role::Held)
+    }
+
+    pub fn comment(&self) -> Style {
+        self.style(Role::Comment)
+    }
+
+    pub fn lua(&self) -> Style {
+        self.style(Role::Lua)
     }
 
     pub fn key(&self) -> Style {

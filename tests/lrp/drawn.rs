@@ -5,11 +5,12 @@ use lrp::runtime::record::*;
 use lrp::runtime::time::Time;
 use lrp::ui::app::{App, Event, Options as Screen};
 use lrp::ui::glyphs::Charset;
+use lrp::ui::pointer::{Gesture, Pointer};
 use lrp::ui::settings::Settings;
 use lrp::ui::view::Choices;
 use proptest::prelude::*;
 use ratatui::buffer::Buffer;
-use ratatui::layout::{Rect, Size};
+use ratatui::layout::{Position, Rect, Size};
 use serde_json::{Value, json};
 
 use crate::frames::press;
@@ -24,6 +25,7 @@ proptest! {
         whats in prop::collection::vec(whats(), 0..40),
         keys in prop::collection::vec(keys(), 0..40),
         sizes in prop::collection::vec((1u16..130, 1u16..50), 1..6),
+        pointers in prop::collection::vec(pointers(), 40),
         charset in prop::sample::select(vec![Charset::Unicode, Charset::Ascii]),
     ) {
         let size = Size::new(sizes[0].0, sizes[0].1);
@@ -36,6 +38,7 @@ proptest! {
         let mut sizes = sizes.into_iter().cycle();
         for (step, key) in keys.into_iter().enumerate() {
             press(&mut app, key);
+            app.event(Event::Pointer(pointers[step]));
             for what in whats.by_ref().take(2) {
                 app.record(&Record { step: step as u64, t: Time(step as u64 * 100_000), what });
             }
@@ -67,6 +70,13 @@ fn draw(app: &App, size: Size) {
         let other = buffer.content.iter().find(|cell| !cell.symbol().is_ascii());
         assert_eq!(other.map(ratatui::buffer::Cell::symbol), None);
     }
+}
+
+fn pointers() -> impl Strategy<Value = Pointer> {
+    use Gesture::*;
+    let gestures = vec![Click, DoubleClick, RightClick, Drag, Release, WheelUp, WheelDown];
+    let at = (0u16..140, 0u16..60).prop_map(|(x, y)| Position::new(x, y));
+    (prop::sample::select(gestures), at).prop_map(|(gesture, at)| Pointer { at, gesture })
 }
 
 fn keys() -> impl Strategy<Value = &'static str> {

@@ -279,7 +279,7 @@ fn tab_goes_through_the_panes_and_back() {
 
 #[test]
 fn every_key_is_written_as_it_is_read_and_means_one_thing_in_a_pane() {
-    let panes = [Pane::Machines, Pane::Graph, Pane::Variables, Pane::Log, Pane::World, Pane::Detail];
+    let panes = Pane::ALL;
     for entry in action::TABLE {
         for text in entry.keys {
             let key: Key = text.parse().expect("a key");

@@ -27,6 +27,8 @@ mod live;
 mod loader;
 mod lua;
 mod matrix;
+mod mouse;
+mod panes;
 mod picture;
 mod plot;
 mod pty;

@@ -8,6 +8,7 @@ use portable_pty::CommandBuilder;
 use serde_json::Value;
 
 use crate::terminal::pty::{Pty, Running};
+use crate::terminal::tells_of_mouse;
 
 struct User {
     pty: Pty,
@@ -23,6 +24,10 @@ impl User {
     }
 
     fn with(set: &[(&str, &str)]) -> User {
+        User::start(set, &[])
+    }
+
+    fn start(set: &[(&str, &str)], arguments: &[&str]) -> User {
         let folder = tempfile::tempdir().unwrap();
         let behaviors = Path::new(env!("CARGO_MANIFEST_DIR")).join("behaviors");
         fs::create_dir(folder.path().join("worlds")).unwrap();
@@ -33,8 +38,9 @@ impl User {
         let modes = format!("{:?}", pty.modes());
         let mut command = CommandBuilder::new(env!("CARGO_BIN_EXE_lrp"));
         command.args(["line_follower.lrp", "--trace", "trace"]);
+        command.args(arguments);
         command.cwd(folder.path());
-        command.env_remove("NO_COLOR");
+        ["NO_COLOR", "TMUX"].iter().for_each(|name| command.env_remove(name));
         command.env("TERM", "xterm-256color");
         command.env("LC_ALL", "C.UTF-8");
         set.iter().for_each(|(name, value)| command.env(name, value));
@@ -81,7 +87,9 @@ impl User {
     /// It ends; the terminal is as it was, and the robot was stopped.
     fn ends(self, code: u32) {
         assert_eq!(self.running.wait().exit_code(), code);
-        self.pty.wait_for("the shell's screen", |screen| !screen.alternate_screen() && !screen.hide_cursor());
+        self.pty.wait_for("the shell's screen", |screen| {
+            !screen.alternate_screen() && !screen.hide_cursor() && !tells_of_mouse(screen)
+        });
         assert_eq!(format!("{:?}", self.pty.modes()), self.modes);
         self.robot_was_stopped();
     }
@@ -181,6 +189,21 @@ fn every_size_is_filled_and_none_breaks_it() {
         });
     }
     user.sees(&["moving", "looking", "lightlim"]);
+    user.pty.resize(120, 40);
+    user.sees(&["source  line_follower.lrp", "(machine follower", "(var nobump := [true])"]);
+    // What was hidden and moved stays so at every size.
+    user.pty.type_in("4x1]]");
+    user.shows("no log", |text| !text.contains("─ log"));
+    for (cols, rows) in [(80, 24), (40, 24), (120, 40)] {
+        user.pty.resize(cols, rows);
+        user.pty.wait_for(&format!("{cols}x{rows} without a log"), |screen| {
+            let text = screen.contents();
+            screen.size() == (rows, cols)
+                && text.contains("machines")
+                && text.contains("STOP")
+                && !text.contains("─ log")
+        });
+    }
     user.pty.type_in("q");
     user.ends(0);
 }
@@ -189,7 +212,9 @@ fn every_size_is_filled_and_none_breaks_it() {
 fn ctrl_z_stops_the_robot_and_comes_back() {
     let mut user = User::new();
     user.pty.type_in("\x1a");
-    user.pty.wait_for("the shell's screen", |screen| !screen.alternate_screen() && !screen.hide_cursor());
+    user.pty.wait_for("the shell's screen", |screen| {
+        !screen.alternate_screen() && !screen.hide_cursor() && !tells_of_mouse(screen)
+    });
     user.signal(libc::SIGCONT);
     user.sees(&["STOPPED", "machines"]);
     user.traced("the stop", |record| record["kind"] == "stop");
@@ -295,5 +320,101 @@ fn a_tuned_value_is_written_into_the_file_and_one_that_is_not_is_named_at_the_en
     user.pty.type_in("q");
     let told = "lightlim was set to 148 by hand; the file still has 138";
     user.pty.wait_for(told, |screen| !screen.alternate_screen() && screen.contents().replace('\n', "").contains(told));
+    user.ends(0);
+}
+
+impl User {
+    /// As a terminal tells of the mouse: the button, and whether it goes down or up, at the first cell of a text.
+    fn mouse(&mut self, button: u16, text: &str) {
+        let found = std::cell::Cell::new(None);
+        self.pty.wait_for(text, |screen| {
+            found.set(find(screen, text));
+            found.get().is_some()
+        });
+        let (column, row) = found.get().expect("a cell");
+        self.pty.type_in(&format!("\x1b[<{button};{column};{row}M\x1b[<{button};{column};{row}m"));
+    }
+}
+
+/// The column and row, from 1, where a text begins.
+fn find(screen: &vt100::Screen, text: &str) -> Option<(u16, u16)> {
+    let (rows, columns) = screen.size();
+    let length = text.chars().count() as u16;
+    let cells = |row, column| {
+        (column..column + length).filter_map(move |column| screen.cell(row, column)).map(|cell| cell.contents())
+    };
+    let places = (0..rows).flat_map(|row| (0..columns.saturating_sub(length)).map(move |column| (row, column)));
+    let found = places.into_iter().find(|&(row, column)| cells(row, column).collect::<String>() == text);
+    found.map(|(row, column)| (column + 1, row + 1))
+}
+
+const LEFT: u16 = 0;
+const RIGHT: u16 = 2;
+const WHEEL_DOWN: u16 = 65;
+
+#[test]
+fn the_mouse_works_in_a_terminal() {
+    let mut user = User::new();
+    user.pty.wait_for("the mouse", |screen| {
+        tells_of_mouse(screen) && screen.mouse_protocol_encoding() == vt100::MouseProtocolEncoding::Sgr
+    });
+    user.pty.resize(120, 40);
+    user.sees(&["source  line_follower.lrp"]);
+    user.mouse(LEFT, "bumpturn");
+    user.sees(&["▸  bumpturn"]);
+    user.mouse(RIGHT, "  bumpturn");
+    user.sees(&["┌─ bumpturn", "go to the selected state"]);
+    user.mouse(LEFT, "go to the selected state");
+    user.traced("a state", |record| record["kind"] == "force" && record["state"] == "follower/bumpturn");
+    user.mouse(WHEEL_DOWN, "source  line_follower.lrp");
+    user.mouse(LEFT, "lightlim   ");
+    user.sees(&["▸ lightlim"]);
+    user.mouse(LEFT, "space pause");
+    user.sees(&["PAUSED"]);
+    user.mouse(LEFT, "STOP");
+    user.traced("the stop", |record| record["kind"] == "stop" && record["reason"] == "runstop");
+    user.pty.type_in("T");
+    user.pty.wait_for("the terminal's own mouse", |screen| !tells_of_mouse(screen));
+    user.pty.type_in("T");
+    user.pty.wait_for("the mouse again", tells_of_mouse);
+    user.pty.type_in("q");
+    user.ends(0);
+}
+
+#[test]
+fn the_mouse_can_be_left_to_the_terminal() {
+    let mut user = User::start(&[], &["--no-mouse"]);
+    user.pty.wait_for("no mouse", |screen| !tells_of_mouse(screen));
+    user.pty.type_in("\x0c");
+    user.sees(&["machines"]);
+    user.pty.wait_for("no mouse", |screen| !tells_of_mouse(screen));
+    user.pty.type_in("q");
+    user.ends(0);
+}
+
+/// A script for an editor, which covers the screen, changes the file and ends.
+#[test]
+fn an_editor_changes_the_file_and_gives_the_screen_back() {
+    let scripts = tempfile::tempdir().unwrap();
+    let script = scripts.path().join("edit");
+    let text = "#!/bin/sh\nfor file; do :; done\nsed -i 's/lightlim := \\[128\\]/lightlim := [77]/' \"$file\"\n\
+                echo edited; read key\n";
+    fs::write(&script, text).unwrap();
+    let executable = std::os::unix::fs::PermissionsExt::from_mode(0o755);
+    fs::set_permissions(&script, executable).unwrap();
+    let editor = script.to_str().unwrap();
+    let mut user = User::with(&[("EDITOR", editor), ("VISUAL", editor)]);
+    user.types("o", &["the editor will cover this screen"]);
+    user.pty.type_in("o");
+    user.pty.wait_for("the editor", |screen| {
+        !screen.alternate_screen() && !tells_of_mouse(screen) && screen.contents().contains("edited")
+    });
+    user.traced("the edit", |record| record["kind"] == "set" && record["var"] == "lightlim" && record["value"] == 77);
+    user.pty.type_in("\n");
+    user.sees(&["machines", "lightlim", "77", "STOP"]);
+    user.pty.wait_for("the mouse again", tells_of_mouse);
+    let file = fs::read_to_string(user.folder.path().join("line_follower.lrp")).unwrap();
+    assert!(file.contains("lightlim := [77]"));
+    user.pty.type_in("q");
     user.ends(0);
 }

@@ -108,15 +108,15 @@ impl App {
     }
 
     pub fn tree_top(&self) -> usize {
-        self.tree_top
+        self.tree_scroll.top()
     }
 
     pub fn values_top(&self) -> usize {
-        self.values_top
+        self.values_scroll.top()
     }
 
     pub fn detail_top(&self) -> usize {
-        self.detail_top
+        self.detail_scroll.top()
     }
 
     /// The line of the detail a person is at.
@@ -156,10 +156,10 @@ impl App {
         Layout::new(area, self.wish())
     }
 
-    pub(super) fn wish(&self) -> Wish {
+    pub(super) fn wish(&self) -> Wish<'_> {
         let simulated = if self.view.world.is_some() { Simulated::World } else { Simulated::Nothing };
         let tree = self.program().map_or(0, |program| program.machines.len() + program.states.len());
-        Wish { focus: self.focus, figure: self.figure, extent: self.extent, simulated, tree }
+        Wish { focus: self.focus, figure: self.figure, extent: self.extent, simulated, tree, chosen: &self.chosen }
     }
 
     /// The drawing of a machine for an area: kept from the last frame where nothing changed.

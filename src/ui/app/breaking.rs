@@ -21,6 +21,7 @@ impl App {
         let at = match self.focus {
             Pane::Detail => self.transition_in_detail().map_or_else(|| self.selected_break(), |id| self.break_on(id)),
             Pane::Log => self.break_in_log(),
+            Pane::Source | Pane::Graph => self.break_in_text(),
             _ => self.selected_break(),
         };
         match at {
@@ -29,7 +30,7 @@ impl App {
         }
     }
 
-    fn selected_break(&self) -> Result<BreakAt, String> {
+    pub(super) fn selected_break(&self) -> Result<BreakAt, String> {
         match self.selected_element() {
             Some((state, Element::State(_))) => Ok(BreakAt::State { state }),
             Some((path, Element::Machine(_))) => {
@@ -40,7 +41,7 @@ impl App {
         }
     }
 
-    fn break_on(&self, id: TransitionId) -> Result<BreakAt, String> {
+    pub(super) fn break_on(&self, id: TransitionId) -> Result<BreakAt, String> {
         let program = self.program().ok_or("there is no program")?;
         Ok(BreakAt::Transition { transition: TransitionNames::of(program).name(id) })
     }

@@ -9,7 +9,7 @@ use crate::ui::action::Action;
 use crate::ui::format;
 use crate::ui::glyphs;
 use crate::ui::layout::{Layout, Pane};
-use crate::ui::panes::{self, breakpoints, footer, held, help, news, status};
+use crate::ui::panes::{self, breakpoints, footer, held, help, menu, news, status};
 use crate::ui::pen::Pen;
 
 impl App {
@@ -38,21 +38,29 @@ impl App {
             Overlay::Help { top } => help::draw(self, top, body, buffer),
             Overlay::Held { top } => held::draw(self, top, body, buffer),
             Overlay::Breakpoints { at } => breakpoints::draw(self, at, body, buffer),
+            Overlay::Menu(ref menu) => {
+                self.paint_panes(&layout, buffer);
+                menu::draw(self, menu, body, buffer);
+            }
             Overlay::Nothing | Overlay::Typing(_) => {
                 self.paint_panes(&layout, buffer);
                 news::draw(self, layout.area(Pane::Log).unwrap_or(body), buffer);
             }
         }
-        footer::draw(self, layout.footer, buffer)
+        footer::draw(self, layout.footer, buffer).cursor
     }
 
     fn paint_panes(&self, layout: &Layout, buffer: &mut Buffer) {
         for &(pane, area) in &layout.panes {
             panes::draw(self, pane, area, buffer);
         }
-        for rule in &layout.rules {
+        for rule in layout.rules() {
             for y in rule.top()..rule.bottom() {
                 buffer.set_string(rule.x, y, junction(layout, rule.x, y), self.theme().rule());
+            }
+            // Where it ends at a title.
+            if let Some(cell) = buffer.cell_mut((rule.x, rule.bottom())).filter(|cell| cell.symbol() == glyphs::RULE) {
+                cell.set_symbol(glyphs::MEETS_ABOVE);
             }
         }
     }

@@ -48,16 +48,6 @@ impl Move {
     }
 }
 
-/// The first row to show, so that row `at` is among the `height` rows seen, moved as little as can be.
-pub fn top_for(top: usize, at: Option<usize>, length: usize, height: usize) -> usize {
-    let top = match at {
-        Some(at) if at < top => at,
-        Some(at) if at >= top + height => at + 1 - height.max(1),
-        _ => top,
-    };
-    top.min(length.saturating_sub(height))
-}
-
 impl App {
     pub(super) fn go(&mut self, how: Move) {
         self.take_as_subject(self.focus);
@@ -67,6 +57,7 @@ impl App {
             Pane::Variables => self.go_in_values(how),
             Pane::Log => self.go_in_log(how),
             Pane::Detail => self.go_in_detail(how),
+            Pane::Source => self.go_in_source(how),
             Pane::World => (),
         }
     }
@@ -100,12 +91,13 @@ impl App {
     fn go_in_detail(&mut self, how: Move) {
         let (length, page) = (detail::lines(self, self.columns(Pane::Detail)).len(), self.page(Pane::Detail));
         self.detail_at = how.from(Some(self.detail_at), length, page).unwrap_or(0);
-        self.detail_top = top_for(self.detail_top, Some(self.detail_at), length, page);
+        self.detail_scroll.settle(Some(self.detail_at), length, page);
     }
 
     /// Something else is told of.
     pub(super) fn detail_anew(&mut self) {
-        (self.detail_at, self.detail_top) = (0, 0);
+        self.detail_at = 0;
+        self.detail_scroll.rewind();
     }
 
     pub(super) fn go_in_help(&mut self, how: Move) {
@@ -187,12 +179,13 @@ impl App {
             self.figure = figure;
         }
         self.take_as_subject(pane);
+        self.chosen.show(pane);
         self.focus = pane;
     }
 
     /// The pane whose selection the detail tells of, where it has one.
     pub(super) fn take_as_subject(&mut self, pane: Pane) {
-        if self.subject != pane && !matches!(pane, Pane::Detail | Pane::World) {
+        if self.subject != pane && !matches!(pane, Pane::Detail | Pane::World | Pane::Source) {
             self.subject = pane;
             self.detail_anew();
         }
@@ -200,9 +193,9 @@ impl App {
 
     /// The panes a person can go through with Tab: those seen, and where there is no place for it the graph.
     pub(super) fn next_pane(&mut self, step: isize) {
-        const ROUND: [Pane; 6] = [Pane::Machines, Pane::Graph, Pane::World, Pane::Detail, Pane::Variables, Pane::Log];
         let seen = self.seen();
-        let round: Vec<Pane> = ROUND.into_iter().filter(|pane| seen.contains(pane) || *pane == self.focus).collect();
+        let round: Vec<Pane> =
+            Pane::ALL.into_iter().filter(|pane| seen.contains(pane) || *pane == self.focus).collect();
         let at = round.iter().position(|&pane| pane == self.focus).unwrap_or(0) as isize;
         let next = (at + step).rem_euclid(round.len().max(1) as isize) as usize;
         if let Some(&pane) = round.get(next) {
@@ -218,7 +211,7 @@ impl App {
             Extent::Shared => self.layout(self.area()),
         };
         let shown = shared.iter().flat_map(|layout| layout.panes.iter().map(|&(pane, _)| pane));
-        shown.chain(every).collect()
+        shown.chain(every).filter(|&pane| !self.chosen.hides(pane)).collect()
     }
 
     /// The panes that are seen while the machines have the focus.
@@ -234,8 +227,13 @@ impl App {
 
     /// Rows a pane has for its list.
     pub(super) fn page(&self, pane: Pane) -> usize {
-        let area = self.layout(self.area()).and_then(|layout| layout.area(pane));
-        area.map_or(1, |area| usize::from(area.height.saturating_sub(1)))
+        self.seen_rows(pane).unwrap_or(1)
+    }
+
+    /// The same of a pane that is seen.
+    pub(super) fn seen_rows(&self, pane: Pane) -> Option<usize> {
+        let area = self.layout(self.area()).and_then(|layout| layout.area(pane))?;
+        Some(usize::from(area.height.saturating_sub(1)))
     }
 
     /// Columns a pane has.
@@ -244,19 +242,26 @@ impl App {
         area.map_or(0, |area| area.width)
     }
 
-    fn area(&self) -> Rect {
+    pub(super) fn area(&self) -> Rect {
         let Size { width, height } = self.options.size;
         Rect::new(0, 0, width, height)
     }
 
     /// After anything that may have moved a selection: brings it into sight.
     pub(super) fn settle(&mut self) {
-        let rows = self.tree();
-        let at = rows.iter().position(|row| Some(&row.path) == self.selected.as_ref());
-        self.tree_top = top_for(self.tree_top, at, rows.len(), self.page(Pane::Machines));
-        let listing = self.values();
-        let (rows, height) = listing.shares(self.page(Pane::Variables)).upper;
-        let at = listing.position(self.value.as_ref()).filter(|at| rows.contains(at)).map(|at| at - rows.start);
-        self.values_top = top_for(self.values_top, at, rows.len(), height);
+        if let Some(height) = self.seen_rows(Pane::Machines) {
+            let rows = self.tree();
+            let at = rows.iter().position(|row| Some(&row.path) == self.selected.as_ref());
+            self.tree_scroll.settle(at, rows.len(), height);
+        }
+        if let Some(height) = self.seen_rows(Pane::Variables) {
+            let listing = self.values();
+            let (rows, height) = listing.shares(height).upper;
+            let at = listing.position(self.value.as_ref()).filter(|at| rows.contains(at)).map(|at| at - rows.start);
+            self.values_scroll.settle(at, rows.len(), height);
+        }
+        if let Some(height) = self.seen_rows(Pane::Source) {
+            self.settle_source(height);
+        }
     }
 }

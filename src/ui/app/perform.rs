@@ -1,5 +1,6 @@
 //! What each action does: to the screen itself, or as an effect outside.
 
+use super::arranging::Resize;
 use super::movement::Move;
 use super::values::Nudge;
 use super::{App, Effect, LogRow, Overlay};
@@ -46,6 +47,14 @@ impl App {
             Action::BreakWhen => return self.ask_for_condition(),
             Action::SwitchOnError => return self.switch_on_error(),
             Action::OpenEditor => return self.open_editor(),
+            Action::Menu => return self.open_menu(),
+            Action::SwitchMouse => return self.switch_mouse(),
+            Action::Hide => return self.hide(),
+            Action::ShowAll => return self.show_all(),
+            Action::Narrower => return self.resize(Resize::Narrower),
+            Action::Wider => return self.resize(Resize::Wider),
+            Action::Shorter => return self.resize(Resize::Shorter),
+            Action::Taller => return self.resize(Resize::Taller),
             Action::Quit => return vec![Effect::Quit],
             Action::Suspend => return vec![Effect::Suspend],
             Action::Redraw => return vec![Effect::Redraw],
@@ -61,6 +70,9 @@ impl App {
                 Move::of(action).into_iter().for_each(|how| self.go(how));
             }
             Action::ToggleWorld => self.toggle(Figure::World),
+            Action::ToggleSource => self.toggle(Figure::Source),
+            Action::ScrollLeft => self.scroll_left(),
+            Action::ScrollRight => self.scroll_right(),
             Action::Inspect => self.toggle(Figure::Detail),
             Action::WhyNot => self.why_not(),
             Action::Zoom => self.zoom(),
@@ -122,10 +134,13 @@ impl App {
     /// A figure that is seen already is gone to; one that isn't takes the place of the drawing, or gives it back.
     fn toggle(&mut self, figure: Figure) {
         let pane = figure.pane();
-        if self.focus == pane || (self.figure == figure && !self.is_beside_the_drawing(pane)) {
+        if self.focus == pane
+            || (self.figure == figure && !self.chosen.hides(pane) && !self.is_beside_the_drawing(pane))
+        {
             return self.leave_figure();
         }
         self.figure = figure;
+        self.chosen.show(pane);
         if Figure::of(self.focus).is_some() || self.is_beside_the_drawing(pane) || self.page(pane) <= 1 {
             self.focus_on(pane);
         }
@@ -141,7 +156,7 @@ impl App {
     }
 
     /// Back to the drawing; where it has no place of its own, to the machines.
-    fn leave_figure(&mut self) {
+    pub(super) fn leave_figure(&mut self) {
         self.figure = Figure::Graph;
         if Figure::of(self.focus).is_some() {
             self.focus = Pane::Graph;
@@ -177,6 +192,7 @@ impl App {
     fn open_editor(&mut self) -> Vec<Effect> {
         let way = Some(Pane::Detail).filter(|&pane| pane == self.focus).and_then(|_| self.transition_in_detail());
         let place = match self.subject {
+            _ if self.focus == Pane::Source || self.transition_is_drawn() => self.place_in_text(),
             _ if way.is_some() => way.and_then(|id| self.place(self.program()?[id].span)),
             Pane::Variables => self.place_of_value(),
             Pane::Log => self.place_of_log(),
@@ -188,7 +204,7 @@ impl App {
         }
     }
 
-    fn place_of_element(&self) -> Option<(Path, usize, usize)> {
+    pub(super) fn place_of_element(&self) -> Option<(Path, usize, usize)> {
         let program = self.program()?;
         let (_, element) = self.selected_element()?;
         self.place(match element {
@@ -197,13 +213,23 @@ impl App {
         })
     }
 
-    fn place_of_value(&self) -> Option<(Path, usize, usize)> {
+    /// A person took hold of a transition in the drawing.
+    fn transition_is_drawn(&self) -> bool {
+        self.focus == Pane::Graph && self.transition_in_text().is_some()
+    }
+
+    fn place_in_text(&self) -> Option<(Path, usize, usize)> {
+        let (spot, source) = self.source()?;
+        Some((source.name.clone(), spot.line, 1))
+    }
+
+    pub(super) fn place_of_value(&self) -> Option<(Path, usize, usize)> {
         let program = self.program()?;
         self.place(program[program.var(self.value.as_ref()?)?].name_span)
     }
 
     /// Of the selected line; without one, of the first problem.
-    fn place_of_log(&self) -> Option<(Path, usize, usize)> {
+    pub(super) fn place_of_log(&self) -> Option<(Path, usize, usize)> {
         let first = || self.view.problems.first().map(|problem| LogRow::Problem(problem.key.clone()));
         match self.reading.place.clone().or_else(first)? {
             LogRow::Problem(key) => (key.line > 0).then(|| (key.file, key.line, key.column.max(1))),

@@ -1,7 +1,7 @@
 //! All breakpoints over the whole screen, to clear them.
 
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui::layout::{Position, Rect};
 
 use super::sheet;
 use crate::runtime::record::Setter;
@@ -19,10 +19,20 @@ pub fn mark(by: Setter) -> &'static str {
     }
 }
 
+fn top(at: usize, length: usize, area: Rect) -> usize {
+    top_for(0, Some(at), length, usize::from(area.height.saturating_sub(1)))
+}
+
+/// The breakpoint at a cell, where number `at` of them is selected.
+pub fn row_at(length: usize, at: usize, area: Rect, cell: Position) -> Option<usize> {
+    let row = usize::from(cell.y.checked_sub(area.y + 1)?);
+    Some(top(at, length, area) + row).filter(|&row| area.contains(cell) && row < length)
+}
+
 pub fn draw(app: &App, at: usize, area: Rect, buffer: &mut Buffer) {
     let theme = app.theme();
     let all = &app.view().breakpoints;
-    let top = top_for(0, Some(at), all.len(), usize::from(area.height.saturating_sub(1)));
+    let top = top(at, all.len(), area);
     let inside = sheet::title(app, "breakpoints", (top, all.len()), area, buffer);
     if all.is_empty() {
         let lines = format::wrap(&none(app), inside.width.saturating_sub(2));

@@ -65,13 +65,23 @@ pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
     if lines.is_empty() {
         draw_nothing(app, area, buffer, "Select a state, a variable or a line of the log: here is all about it.");
     }
-    let top = app.detail_top().min(lines.len().saturating_sub(usize::from(area.height)));
+    let top = top(app, lines.len(), area);
     for (y, (index, line)) in (0..area.height).zip(lines.iter().enumerate().skip(top)) {
         draw_line(app, line, index == app.detail_at() && app.focus() == Pane::Detail, Pen::new(buffer, area, y));
     }
     let below = lines.len().saturating_sub(top + usize::from(area.height));
     let note = if below > 0 { format!("{below} more") } else { String::new() };
     Title::new(Pane::Detail.title(), note)
+}
+
+fn top(app: &App, lines: usize, area: Rect) -> usize {
+    app.detail_top().min(lines.saturating_sub(usize::from(area.height)))
+}
+
+/// The line in a row.
+pub fn at(app: &App, area: Rect, row: usize) -> Option<usize> {
+    let lines = lines(app, area.width).len();
+    Some(top(app, lines, area) + row).filter(|&line| line < lines)
 }
 
 fn draw_line(app: &App, line: &Line, selected: bool, mut pen: Pen) {

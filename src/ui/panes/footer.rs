@@ -1,5 +1,7 @@
 //! The last line: what the keys do here, or a sentence, or the value being typed. How to stop the robot is always in it.
 
+use std::ops::Range;
+
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::style::Style;
@@ -13,8 +15,16 @@ use crate::ui::key::Key;
 use crate::ui::pen::Pen;
 use crate::ui::view::{Mode, name};
 
-/// Where the cursor stands, when there is one.
-pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Option<Position> {
+/// What a person can take hold of in it.
+#[derive(Debug, Default)]
+pub struct Footer {
+    /// Where the cursor stands, when there is one.
+    pub cursor: Option<Position>,
+    /// What clicks do there, with the columns.
+    pub actions: Vec<(Range<u16>, Action)>,
+}
+
+pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Footer {
     let theme = app.theme();
     let typing = match app.overlay() {
         Overlay::Typing(typing) => Some(typing),
@@ -23,29 +33,27 @@ pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Option<Position> {
     if let Some((typing, message)) = typing.zip(app.message()) {
         draw_mistake(app, typing, message, area, buffer);
     }
+    let mut footer = Footer::default();
     let mut pen = Pen::new(buffer, area, 0);
     pen.put_right(" ", theme.normal());
-    let keys = app.keys();
+    let (keys, end) = (app.keys(), pen.end());
     let stop = if typing.is_some() { keys.name_always(Action::Runstop) } else { keys.name(Action::Runstop) };
     pen.put_right(" STOP", theme.stop()).put_right(&stop, theme.stop());
+    footer.actions.push((pen.end()..end, Action::Runstop));
     pen.put_right("  ", theme.normal());
     pen.put(" ", theme.normal());
     match (typing, app.message()) {
-        (Some(typing), _) => Some(draw_typing(app, typing, pen, area)),
-        (None, Some(message)) => {
-            pen.put(message, theme.bold());
-            None
-        }
-        (None, None) => {
-            match app.overlay() {
-                Overlay::Help { .. } => draw_given(app, &[(Action::Back, "back")], &mut pen),
-                Overlay::Held { .. } => draw_given(app, HELD, &mut pen),
-                Overlay::Breakpoints { .. } => draw_given(app, BREAKPOINTS, &mut pen),
-                Overlay::Nothing | Overlay::Typing(_) => draw_keys(app, &mut pen),
-            }
-            None
-        }
+        (Some(typing), _) => footer.cursor = Some(draw_typing(app, typing, pen, area)),
+        (None, Some(message)) => _ = pen.put(message, theme.bold()),
+        (None, None) => match app.overlay() {
+            Overlay::Help { .. } => draw_given(app, &[(Action::Back, "back")], &mut pen, &mut footer),
+            Overlay::Held { .. } => draw_given(app, HELD, &mut pen, &mut footer),
+            Overlay::Breakpoints { .. } => draw_given(app, BREAKPOINTS, &mut pen, &mut footer),
+            Overlay::Menu(_) => draw_given(app, MENU, &mut pen, &mut footer),
+            Overlay::Nothing | Overlay::Typing(_) => draw_keys(app, &mut pen, &mut footer),
+        },
     }
+    footer
 }
 
 const HELD: &[(Action, &str)] = &[
@@ -56,12 +64,13 @@ const HELD: &[(Action, &str)] = &[
 ];
 const BREAKPOINTS: &[(Action, &str)] =
     &[(Action::Back, "back"), (Action::ToggleBreakpoint, "clear"), (Action::DropHeld, "clear all")];
+const MENU: &[(Action, &str)] = &[(Action::Into, "does it"), (Action::Back, "back")];
 
-fn draw_given(app: &App, keys: &[(Action, &str)], pen: &mut Pen) {
+fn draw_given(app: &App, keys: &[(Action, &str)], pen: &mut Pen, footer: &mut Footer) {
     for (action, label) in keys {
         let key = app.keys().name(*action);
         if pen.room() >= format::width(&key) + 1 + format::width(label) {
-            draw_key(app, &key, label, pen);
+            footer.actions.push((draw_key(app, &key, label, pen), *action));
         }
     }
 }
@@ -112,24 +121,28 @@ fn after_columns(text: &str, columns: usize) -> String {
     rest.collect()
 }
 
-fn draw_keys(app: &App, pen: &mut Pen) {
-    let theme = app.theme();
-    pen.put_right(" help", theme.dim())
-        .put_right(&app.keys().name(Action::Help), theme.key())
-        .put_right("  ", theme.normal());
+fn draw_keys(app: &App, pen: &mut Pen, footer: &mut Footer) {
+    let (theme, end) = (app.theme(), pen.end());
+    pen.put_right(" help", theme.dim()).put_right(&app.keys().name(Action::Help), theme.key());
+    footer.actions.push((pen.end()..end, Action::Help));
+    pen.put_right("  ", theme.normal());
     let offered = app.keys().offered(app.focus());
     for (entry, key) in offered.into_iter().filter(|(entry, _)| app.offers(entry.action)) {
         let (key, label) = (short(key), label(app, entry));
         if pen.room() < format::width(&key) + 1 + format::width(label) {
             return;
         }
-        draw_key(app, &key, label, pen);
+        footer.actions.push((draw_key(app, &key, label, pen), entry.action));
     }
 }
 
-fn draw_key(app: &App, key: &str, label: &str, pen: &mut Pen) {
-    let theme = app.theme();
-    pen.put(key, theme.key()).put(" ", theme.dim()).put(label, theme.dim()).put("  ", theme.dim());
+/// The columns it stands in.
+fn draw_key(app: &App, key: &str, label: &str, pen: &mut Pen) -> Range<u16> {
+    let (theme, start) = (app.theme(), pen.at());
+    pen.put(key, theme.key()).put(" ", theme.dim()).put(label, theme.dim());
+    let columns = start..pen.at();
+    pen.put("  ", theme.dim());
+    columns
 }
 
 /// `Space` is a word among words in the footer; `R` and `r` are different keys.

@@ -6,7 +6,7 @@ use ratatui::style::{Modifier, Style};
 
 use super::breakpoints::mark;
 use super::diagram::Diagram;
-use super::{Title, below_title, draw_nothing};
+use super::{Target, Title, below_title, draw_nothing};
 use crate::model::{MachineId, Program, StateId, TransitionId};
 use crate::runtime::record::Setter;
 use crate::ui::app::App;
@@ -60,6 +60,16 @@ pub fn at(app: &App, area: Rect, cell: Position) -> Option<Spot> {
     let (left, top) = Brush::new(app, program, machine, &diagram).origin(area);
     let (x, y) = (cell.x - area.x, cell.y - area.y);
     diagram.at(program, machine, Point { x: left.saturating_add(x), y: top.saturating_add(y) })
+}
+
+/// What a person takes hold of there.
+pub fn target(app: &App, area: Rect, cell: Position) -> Option<Target> {
+    let program = app.program()?;
+    Some(match at(app, area, cell)? {
+        Spot::Machine(machine) => Target::Element(program[machine].path.clone()),
+        Spot::State(state) => Target::Element(program[state].path.clone()),
+        Spot::Transition(id) => Target::Transition(id),
+    })
 }
 
 /// `follower / looking / lookalgo`, closer where there is little room, and then only its end.

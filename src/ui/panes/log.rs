@@ -19,7 +19,7 @@ const WIDE: u16 = 60;
 const TIMED: u16 = 31;
 
 pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
-    let shown = app.reading().window(app.view(), usize::from(area.height), |key| is_long(app, key, area.width));
+    let shown = window(app, area);
     if shown.is_empty() {
         draw_nothing(app, area, buffer, &nothing(app));
     }
@@ -42,6 +42,17 @@ pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
         y += lines;
     }
     Title::new(title(app), note(app))
+}
+
+fn window(app: &App, area: Rect) -> Vec<Shown> {
+    app.reading().window(app.view(), usize::from(area.height), |key| is_long(app, key, area.width))
+}
+
+/// What the line of a row is about.
+pub fn at(app: &App, area: Rect, row: usize) -> Option<LogRow> {
+    let lines =
+        window(app, area).into_iter().flat_map(|shown| std::iter::repeat_n(shown.row, usize::from(shown.lines)));
+    lines.into_iter().nth(row)
 }
 
 fn nothing(app: &App) -> String {
@@ -234,7 +245,7 @@ fn word(gravity: Gravity) -> &'static str {
     }
 }
 
-fn sign(gravity: Gravity) -> &'static str {
+pub(super) fn sign(gravity: Gravity) -> &'static str {
     match gravity {
         Gravity::Error => glyphs::CROSS,
         Gravity::Warning => "!",

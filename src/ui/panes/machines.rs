@@ -12,7 +12,7 @@ use crate::ui::glyphs;
 use crate::ui::layout::Pane;
 use crate::ui::pen::Pen;
 use crate::ui::tree::{Element, Row};
-use crate::ui::view::{View, name};
+use crate::ui::view::{Path, View, name};
 
 pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
     let rows = app.tree();
@@ -24,6 +24,11 @@ pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
         draw_row(app, program, row, Pen::new(buffer, area, y));
     }
     Title::new(Pane::Machines.title(), note(app, &rows, usize::from(area.height)))
+}
+
+/// The machine or state in a row.
+pub fn at(app: &App, row: usize) -> Option<Path> {
+    app.tree().into_iter().nth(app.tree_top() + row).map(|row| row.path)
 }
 
 fn nothing(app: &App) -> String {

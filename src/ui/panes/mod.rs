@@ -9,19 +9,23 @@ pub mod held;
 pub mod help;
 pub mod log;
 pub mod machines;
+pub mod menu;
 pub mod news;
 pub mod sheet;
+pub mod source;
 pub mod status;
 pub mod variables;
 pub mod world;
 
 use ratatui::buffer::Buffer;
-use ratatui::layout::Rect;
+use ratatui::layout::{Position, Rect};
 
-use super::app::App;
+use super::app::{App, LogRow, TextLine};
 use super::glyphs;
 use super::layout::Pane;
 use super::pen::Pen;
+use super::view::Path;
+use crate::model::TransitionId;
 
 /// The words in a pane's first row, and what is noted at their right.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -46,8 +50,42 @@ pub fn draw(app: &App, pane: Pane, area: Rect, buffer: &mut Buffer) {
         Pane::Log => log::draw(app, inside, buffer),
         Pane::World => world::draw(app, inside, buffer),
         Pane::Detail => detail::draw(app, inside, buffer),
+        Pane::Source => source::draw(app, inside, buffer),
     };
     draw_title(app, pane, &title, Pen::new(buffer, area, 0));
+}
+
+/// What a person takes hold of at a cell.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Target {
+    /// A machine or a state.
+    Element(Path),
+    Transition(TransitionId),
+    /// A variable, a part of one, or what comes from a robot.
+    Value(Path),
+    Log(LogRow),
+    /// A line of the detail.
+    Detail(usize),
+    /// A line of a text, and the byte of it.
+    Text(TextLine, usize),
+}
+
+/// What a pane shows at a cell of the screen; nothing in its title.
+pub fn at(app: &App, pane: Pane, area: Rect, cell: Position) -> Option<Target> {
+    let inside = below_title(area);
+    if !inside.contains(cell) {
+        return None;
+    }
+    let row = usize::from(cell.y - inside.y);
+    match pane {
+        Pane::Machines => machines::at(app, row).map(Target::Element),
+        Pane::Graph => graph::target(app, area, cell),
+        Pane::Variables => variables::at(app, inside, row).map(Target::Value),
+        Pane::Log => log::at(app, inside, row).map(Target::Log),
+        Pane::Detail => detail::at(app, inside, row).map(Target::Detail),
+        Pane::Source => source::at(app, inside, cell),
+        Pane::World => None,
+    }
 }
 
 /// A pane's area without its first row.

@@ -14,7 +14,7 @@ use crate::ui::format;
 use crate::ui::glyphs;
 use crate::ui::layout::Pane;
 use crate::ui::pen::Pen;
-use crate::ui::scope::{Row, Shares, Way};
+use crate::ui::scope::{Listing, Row, Shares, Way};
 use crate::ui::view::{Path, Variable};
 
 /// What was sent longer ago than this is no longer being sent.
@@ -33,23 +33,50 @@ pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
         };
         draw_nothing(app, area, buffer, &nothing);
     }
-    let Shares { fixed, upper: (upper, height), lower: (lower, below) } = listing.shares(usize::from(area.height));
-    let at = listing.position(app.selected_value());
-    let top = upper.start + app.values_top().min(upper.len());
-    let first = lower.start + top_for(0, at.and_then(|at| at.checked_sub(lower.start)), lower.len(), below);
-    let parts = [(0, 0..fixed), (fixed, top..upper.end.min(top + height)), (fixed + height, first..lower.end)];
-    for (y, rows) in parts {
-        for (y, index) in (y as u16..area.height).zip(rows) {
-            let style = if index < listing.pinned { app.theme().bold() } else { app.theme().normal() };
-            draw_row(app, &listing.rows[index], style, Pen::new(buffer, area, y));
-        }
+    let seen = Seen::of(app, &listing, area);
+    for &(y, index) in &seen.rows {
+        let style = if index < listing.pinned { app.theme().bold() } else { app.theme().normal() };
+        draw_row(app, &listing.rows[index], style, Pen::new(buffer, area, y));
     }
-    let hidden = upper.end.saturating_sub(top + height) + lower.end.saturating_sub(first + below);
+    let Seen { fixed, top, hidden, .. } = seen;
     let note = if hidden > 0 { format!("{hidden} more") } else { String::new() };
     let filter = &app.arrangement().filter;
     let filter = if filter.is_empty() { String::new() } else { format!("/{filter}  ") };
     let scope = listing.scope_at(if fixed > 0 { 0 } else { top }).map_or("", |scope| scope);
     Title::new(format!("{}  {filter}{scope}", Pane::Variables.title()).trim_end(), note)
+}
+
+/// The variable, or part of one, in a row.
+pub fn at(app: &App, area: Rect, row: usize) -> Option<Path> {
+    let listing = app.values();
+    let seen = Seen::of(app, &listing, area);
+    let &(_, index) = seen.rows.iter().find(|&&(y, _)| usize::from(y) == row)?;
+    listing.rows[index].path().cloned()
+}
+
+/// Which rows of the listing are seen.
+struct Seen {
+    /// Rows at the top that don't scroll.
+    fixed: usize,
+    /// The first row of those that do.
+    top: usize,
+    /// The rows of the pane with those of the listing.
+    rows: Vec<(u16, usize)>,
+    /// How many more there are below.
+    hidden: usize,
+}
+
+impl Seen {
+    fn of(app: &App, listing: &Listing, area: Rect) -> Seen {
+        let Shares { fixed, upper: (upper, height), lower: (lower, below) } = listing.shares(usize::from(area.height));
+        let at = listing.position(app.selected_value());
+        let top = upper.start + app.values_top().min(upper.len());
+        let first = lower.start + top_for(0, at.and_then(|at| at.checked_sub(lower.start)), lower.len(), below);
+        let parts = [(0, 0..fixed), (fixed, top..upper.end.min(top + height)), (fixed + height, first..lower.end)];
+        let rows = parts.into_iter().flat_map(|(y, rows)| (y as u16..area.height).zip(rows)).collect();
+        let hidden = upper.end.saturating_sub(top + height) + lower.end.saturating_sub(first + below);
+        Seen { fixed, top, rows, hidden }
+    }
 }
 
 /// `style`: of its name.

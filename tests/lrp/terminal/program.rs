@@ -10,6 +10,7 @@ use crossterm::event::{Event, KeyCode};
 use lrp::session::signals::{Signal, Signals};
 use lrp::ui::editor::{Launch, Manner};
 use lrp::ui::input::{Hold, Input, Received};
+use lrp::ui::pointer::Mouse;
 use lrp::ui::terminal::Screen;
 
 /// Names the file to which the program writes what can't be seen on its screen.
@@ -33,7 +34,7 @@ struct Program {
 
 pub fn play(journal: &Path) {
     let stop = journal.to_owned();
-    let screen = match Screen::enter(move || note(&stop, "robot stopped")) {
+    let screen = match Screen::enter(Mouse::Ours, move || note(&stop, "robot stopped")) {
         Ok(screen) => screen,
         Err(error) => return note(journal, &error.to_string()),
     };
