@@ -20,6 +20,9 @@ use crate::settings::Settings;
 /// The most operations, in bytes, that go into one frame.
 const FULL: usize = 900;
 
+/// How long sensors may take to come into their modes at the beginning.
+const SETTLE: Duration = Duration::from_millis(100);
+
 pub struct Visit<'a> {
     desk: &'a Desk,
     robot: &'a Robot,
@@ -76,9 +79,12 @@ impl<'a> Visit<'a> {
         }
     }
 
-    /// Halts the brick, whatever it was about, and reads it once.
+    /// Halts the brick, whatever it was about, and reads it twice: the first time puts the sensors into their modes, and
+    /// a program that begins when the robot is up finds everything read.
     pub fn begin(&mut self) -> Result<(), Trouble> {
         self.link.ask(&orders::full_stop())?;
+        self.poll()?;
+        std::thread::sleep(SETTLE);
         self.poll()
     }
 

@@ -98,7 +98,8 @@ impl Machine {
     }
 
     fn operation(&mut self, run: &mut Run) -> Result<Duration, Nonsense> {
-        match run.opcode()? {
+        let code = run.opcode()?;
+        match code {
             0xa2 | 0xb2 => self.each(run, |motor, _| motor.position = 0.0, 0)?,
             0xa3 => self.each(run, |motor, given| motor.halt(given[0] != 0), 1)?,
             0xa4 => self.each(run, |motor, given| (motor.speed, motor.regulated) = (given[0].into(), false), 1)?,
@@ -106,12 +107,7 @@ impl Machine {
             0xa6 => self.each(run, |motor, _| motor.left = None, 0)?,
             0xac | 0xae => self.each(run, |motor, given| motor.turn(given, Left::Degrees), 5)?,
             0xad | 0xaf => self.each(run, |motor, given| motor.turn(given, Left::Milliseconds), 5)?,
-            0xb0 => {
-                self.each(run, |motor, given| motor.turn(&[given[0], given[2], 0, 0, given[3]], Left::Degrees), 4)?
-            }
-            0xb1 => {
-                self.each(run, |motor, given| motor.turn(&[given[0], given[2], 0, 0, given[3]], Left::Milliseconds), 4)?
-            }
+            0xb0 | 0xb1 => self.together(run, code)?,
             0xa8 => {
                 let motor = self.motor(run)?;
                 run.answer(&[motor.speed as i8 as u8])?;
@@ -172,6 +168,21 @@ impl Machine {
         let given = (0..more).map(|_| run.number()).collect::<Result<Vec<_>, _>>()?;
         let chosen = (0..4).filter(|index| motors & 1 << index != 0);
         chosen.for_each(|index| act(&mut self.motors[index], &given));
+        Ok(())
+    }
+
+    /// Two motors that are done at the same time, one of them slower.
+    fn together(&mut self, run: &mut Run, code: u8) -> Result<(), Nonsense> {
+        let [_, motors, speed, turn, way, brake] = run.numbers()?;
+        let ms = match code {
+            0xb0 => (f64::from(way) / (f64::from(speed.abs()) / 100.0 * FULL_SPEED) * 1000.0) as i32,
+            _ => way,
+        };
+        let slower = speed - speed * turn.abs() / 100;
+        let chosen = (0..4).filter(|index| motors & 1 << index != 0);
+        for (index, speed) in chosen.zip(if turn > 0 { [speed, slower] } else { [slower, speed] }) {
+            self.motors[index].turn(&[speed, ms, 0, 0, brake], Left::Milliseconds);
+        }
         Ok(())
     }
 

@@ -72,7 +72,7 @@ fn a_move_is_done_when_the_motor_is_still() {
 fn motors_go_in_step() {
     let mut robot = Robot::connected(json!({}));
     assert_eq!(robot.call("motorB.startWith", json!(["C", 40, 30])), Ok(Value::Null));
-    assert_eq!((robot.speed(1), robot.speed(2)), (40.0, 40.0));
+    assert_eq!((robot.speed(1), robot.speed(2)), (40.0, 28.0));
     assert_eq!(robot.call("motorC.moveWith", json!(["B", -100, 50, 30, "brake"])), Ok(Value::Null));
     assert_eq!(robot.call("motorC.moveWith", json!(["motorB", 0, 50, 30, "brake"])), Ok(Value::Null), "no way at all");
     assert_eq!(robot.call("motorB.runWith", json!(["C", 0, 50, 0, "brake"])), Ok(Value::Null), "no time at all");
@@ -147,10 +147,10 @@ fn a_reversed_motor_counts_the_other_way() {
     let mut robot = Robot::connected(json!({ "reversed": ["A"] }));
     assert_eq!(robot.call("motorA.start", json!([50])), Ok(Value::Null));
     assert_eq!(robot.speed(0), -50.0);
-    let seen = robot.lrp.input_where("portA", |motor| motor["speed"] == 50);
-    assert!(seen["position"].as_i64() > Some(0), "{seen}");
+    robot.lrp.input_where("portA", |motor| motor["speed"] == 50 && motor["position"].as_i64() > Some(0));
     assert_eq!(robot.call("motorA.moveTo", json!([0, 100, "brake", 0])), Ok(Value::Null));
-    assert_eq!(robot.brick.state().machine.motors[0].position, 0.0);
+    let position = robot.brick.state().machine.motors[0].position;
+    assert!(position.abs() <= 1.0, "a brick counts whole degrees: {position}");
 }
 
 #[test]
