@@ -12,6 +12,7 @@ use crate::runtime::{OnEdit, OnError, Options, Saves, Time};
 use crate::session::engine_thread::Pacing;
 use crate::session::live::Setup;
 use crate::session::pace::Rate;
+use crate::session::plugins::Plugins;
 use crate::session::trace::Clock;
 use crate::ui::pointer::Mouse;
 
@@ -50,6 +51,9 @@ pub enum Task {
         /// Tell what a code means, with examples; without CODE, list all codes
         #[arg(long, value_name = "CODE", num_args = 0..=1, default_missing_value = LIST, conflicts_with = "files")]
         explain: Option<String>,
+        /// A folder to look for bridges in, before all others
+        #[arg(long, value_name = "FOLDER")]
+        bridge_path: Vec<PathBuf>,
         /// For people or for tools
         #[arg(long, value_enum, default_value_t = Format::Text)]
         format: Format,
@@ -71,7 +75,13 @@ pub enum Task {
     Bridges {
         /// The kind whose inputs and outputs to list
         kind: Option<String>,
+        /// A folder to look for bridges in, before all others
+        #[arg(long, value_name = "FOLDER")]
+        bridge_path: Vec<PathBuf>,
     },
+    /// The process that a bridge's library lives in
+    #[command(hide = true)]
+    BridgeHost { library: PathBuf },
 }
 
 #[derive(Clone, Copy, ValueEnum)]
@@ -108,6 +118,9 @@ pub struct RunArgs {
     /// Which robot a name stands for, whatever the program says, such as robot=sim
     #[arg(long, value_name = "NAME=KIND", value_parser = robot)]
     pub bridge: Vec<Robot>,
+    /// A folder to look for bridges in, before all others
+    #[arg(long, value_name = "FOLDER")]
+    pub bridge_path: Vec<PathBuf>,
     /// Write the records to a file, a JSON object a line; -: standard output
     #[arg(long, value_name = "PATH")]
     pub trace: Option<PathBuf>,
@@ -199,6 +212,7 @@ impl RunArgs {
             options: Options { limits, access, seed: self.seed, on_edit, on_error, ..Options::default() },
             pacing: Pacing { rate: self.rate, clock, until: self.until.map(|time| Time(time.as_micros() as u64)) },
             robots: self.bridge.clone(),
+            plugins: Plugins::here(&self.bridge_path),
         }
     }
 }

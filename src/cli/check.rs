@@ -1,25 +1,26 @@
-//! `lrp check` and `lrp bridges`: what is wrong with programs, and what robots there are.
+//! `lrp check`: what is wrong with programs.
 
 use std::io::{IsTerminal, stdout};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 use super::args::Format;
-use super::output::{complain, fail, finish};
+use super::output::{complain, finish};
 use crate::runtime::record::Finding;
 use crate::session::compile::{Compiler, Rejected};
 use crate::session::live::folder;
-use crate::session::robots::{self, Problems, Robots, Workshop};
+use crate::session::plugins::Plugins;
+use crate::session::robots::{Problems, Robots, Workshop};
 use crate::session::{findings, loader};
 use crate::syntax::render::{Style, render};
 use crate::syntax::{Diagnostic, Source};
 
-pub fn check(files: &[PathBuf], format: Format) -> ExitCode {
+pub fn check(files: &[PathBuf], format: Format, plugins: &Plugins) -> ExitCode {
     let mut failed = false;
     let mut listed: Vec<Finding> = Vec::new();
     let mut text = String::new();
     for file in files {
-        match diagnose(file) {
+        match diagnose(file, plugins) {
             Err(why) => {
                 failed = true;
                 match format {
@@ -65,14 +66,15 @@ fn shown(diagnostics: &[Diagnostic], sources: &[Source]) -> String {
 }
 
 /// Everything found in a program, in its texts, in its worlds.
-pub fn diagnose(file: &Path) -> Result<(Vec<Source>, Vec<Diagnostic>), loader::Unreadable> {
+pub fn diagnose(file: &Path, plugins: &Plugins) -> Result<(Vec<Source>, Vec<Diagnostic>), loader::Unreadable> {
     let source = loader::read(file)?;
-    match Compiler::new(Vec::new()).compile(source) {
+    match Compiler::new(Vec::new()).with_plugins(plugins.clone()).compile(source) {
         Err(Rejected { sources, diagnostics }) => Ok((sources, diagnostics)),
         Ok(mut program) => {
-            let workshop = Workshop { folder: folder(file), seed: 1, robots: Robots::AsProgrammed };
+            let (folder, plugins) = (folder(file), plugins.clone());
+            let workshop = Workshop { folder, seed: 1, robots: Robots::AsProgrammed, plugins };
             for bridge in program.bridges.clone() {
-                if let Err(Problems { sources, diagnostics }) = workshop.make(&bridge, program.sources.len() as u16) {
+                if let Err(Problems { sources, diagnostics }) = workshop.check(&bridge, program.sources.len() as u16) {
                     program.sources.extend(sources);
                     program.findings.extend(diagnostics);
                 }
@@ -80,22 +82,4 @@ pub fn diagnose(file: &Path) -> Result<(Vec<Source>, Vec<Diagnostic>), loader::U
             Ok((program.sources, program.findings))
         }
     }
-}
-
-pub fn bridges(kind: Option<&str>) -> ExitCode {
-    let Some(kind) = kind else {
-        let lines = robots::KINDS.iter().map(|kind| format!("{kind:10} built in    {}\n", robots::summary(kind)));
-        return finish(&lines.collect::<String>(), ExitCode::SUCCESS);
-    };
-    let Some(description) = robots::offer(kind) else {
-        return fail(format_args!("there is no bridge of kind `{kind}`; there is: {}", robots::KINDS.join(", ")));
-    };
-    let mut text = format!("{kind}: {}\n", robots::summary(kind));
-    for (title, ports) in [("inputs", &description.inputs), ("outputs", &description.outputs)] {
-        text += &format!("\n{title}\n");
-        for port in ports {
-            text += &format!("  {:10} {}\n  {:10} {}\n", port.name, port.doc, "", port.message);
-        }
-    }
-    finish(&text, ExitCode::SUCCESS)
 }

@@ -1,6 +1,7 @@
 //! The command line: what can be asked for, and who does it. Only what was asked for goes to standard output.
 
 mod args;
+mod bridges;
 mod check;
 mod explain;
 mod graph;
@@ -12,6 +13,7 @@ use std::process::ExitCode;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use clap::{CommandFactory, Parser};
 
+use crate::session::plugins::Plugins;
 use crate::syntax::nearest::nearest;
 use args::{Args, Task};
 
@@ -24,11 +26,12 @@ pub fn main() -> ExitCode {
         Task::Live(live) => crate::ui::live::run(live.setup(), live.run.trace.clone(), live.mouse()),
         Task::Run(run) => crate::session::headless::run(run.setup(), run.trace),
         Task::Check { explain: Some(code), .. } => explain::explain(&code),
-        Task::Check { files, format, .. } => check::check(&files, format),
+        Task::Check { files, format, bridge_path, .. } => check::check(&files, format, &Plugins::here(&bridge_path)),
         Task::Graph(graph) => graph::print(&graph),
         Task::New { name } => new::create(&name),
         Task::Test { paths } => crate::session::test_runner::run(&paths),
-        Task::Bridges { kind } => check::bridges(kind.as_deref()),
+        Task::Bridges { kind, bridge_path } => bridges::list(kind.as_deref(), &Plugins::here(&bridge_path)),
+        Task::BridgeHost { library } => crate::session::plugins::host(&library),
     }
 }
 

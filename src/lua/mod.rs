@@ -42,6 +42,7 @@ pub use precompiled::Precompiled;
 pub use registers::{FieldKind, FieldUse, Gives};
 pub use sandbox::Finder;
 pub use source::SyntaxError;
+pub use value::device_mark;
 
 use desk::Desk;
 use fingerprint::Fingerprint;

@@ -5,7 +5,7 @@
 //! beyond about [`BYTES`] is left out; `"cut"` says how many entries.
 
 use std::cmp::Ordering;
-use std::ffi::c_int;
+use std::ffi::{c_int, c_void};
 
 use mlua_sys as ffi;
 use serde_json::{Map, Number, Value, json};
@@ -22,6 +22,12 @@ const COUNTED: usize = 1 << 20;
 pub(super) struct Bounds {
     pub depth: usize,
     pub bytes: usize,
+}
+
+/// Where a metatable has the name of what its table stands for, a part of a robot.
+pub fn device_mark() -> *const c_void {
+    static MARK: u8 = 0;
+    (&raw const MARK).cast()
 }
 
 struct Reader {
@@ -58,7 +64,10 @@ impl Reader {
                 ffi::LUA_TNUMBER if ffi::lua_isinteger(state, index) != 0 => ffi::lua_tointeger(state, index).into(),
                 ffi::LUA_TNUMBER => float(ffi::lua_tonumber(state, index)),
                 ffi::LUA_TSTRING => Value::String(self.string(index)),
-                ffi::LUA_TTABLE => self.table(index, depth),
+                ffi::LUA_TTABLE => match self.device(index) {
+                    Some(name) => json!({ "lua": name }),
+                    None => self.table(index, depth),
+                },
                 _ => json!({ "lua": "function" }),
             }
         }
@@ -78,6 +87,19 @@ impl Reader {
             text.push('…');
         }
         text
+    }
+
+    /// What a table stands for that is a part of a robot: `robot.motorA`.
+    unsafe fn device(&mut self, index: c_int) -> Option<String> {
+        unsafe {
+            if ffi::lua_checkstack(self.state, 3) == 0 || ffi::lua_getmetatable(self.state, index) == 0 {
+                return None;
+            }
+            ffi::lua_rawgetp(self.state, -1, device_mark());
+            let name = (ffi::lua_type(self.state, -1) == ffi::LUA_TSTRING).then(|| self.string(-1));
+            ffi::lua_pop(self.state, 2);
+            name
+        }
     }
 
     unsafe fn table(&mut self, index: c_int, depth: usize) -> Value {

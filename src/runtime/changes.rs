@@ -13,12 +13,19 @@ pub(super) struct Changes {
     reach: Reach,
     /// Groups that were reached in a step; kept for its memory.
     reached: Vec<Group>,
+    /// A robot said something of a call that a variable may hold.
+    answered: Option<Arc<str>>,
 }
 
 impl Changes {
     /// A block that uses variables has run.
     pub fn touched(&mut self, block: BlockId) {
         self.touched.push(block);
+    }
+
+    /// A robot has changed what a call's value tells.
+    pub fn answered(&mut self, bridge: &Arc<str>) {
+        self.answered = Some(Arc::clone(bridge));
     }
 
     pub fn follow(&mut self, program: &Program) {
@@ -31,6 +38,19 @@ impl Engine {
     pub(super) fn report_changes(&mut self) {
         if !self.changes.touched.is_empty() {
             self.compare();
+        }
+        if let Some(bridge) = self.changes.answered.take() {
+            self.report_answered(&bridge);
+        }
+    }
+
+    /// Any variable may hold the call that was answered.
+    fn report_answered(&mut self, bridge: &Arc<str>) {
+        for index in 0..self.program.vars.len() {
+            let var = VarId(index as u32);
+            if self.store.lua.changed(self.store.cell(var)) && self.is_alive(var) {
+                self.report(var, Arc::clone(bridge));
+            }
         }
     }
 

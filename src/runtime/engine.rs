@@ -8,6 +8,7 @@ use serde_json::Value;
 use super::breakpoints::Breakpoints;
 use super::command::{OnEdit, OnError, Saves};
 use super::faults::Faults;
+use super::message::shown;
 use super::note::Note;
 use super::patch::Pending;
 use super::plan::Plan;
@@ -48,6 +49,20 @@ pub struct Input {
     pub bridge: Arc<str>,
     pub name: Arc<str>,
     pub value: Value,
+}
+
+/// What a bridge said of a call since the last step.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reply {
+    pub bridge: Arc<str>,
+    /// Which call it was.
+    pub name: Arc<str>,
+    pub id: u64,
+    /// Whether the call is over; else the value is how far it has come.
+    pub done: bool,
+    pub value: Value,
+    /// Why it failed.
+    pub error: Option<String>,
 }
 
 pub struct Engine {
@@ -154,7 +169,17 @@ impl Engine {
         for input in inputs {
             self.robots.receive(&self.store.lua, input, self.now);
             let Input { bridge, name, value } = input.clone();
-            self.rare(What::Input { bridge, name, value });
+            self.rare(What::Input { bridge, name, value: shown(value) });
+        }
+    }
+
+    /// What robots said of calls; blocks see it in the step to come.
+    pub fn answer(&mut self, replies: Vec<Reply>) {
+        for reply in replies {
+            self.robots.answer(&self.store.lua, &reply);
+            self.changes.answered(&reply.bridge);
+            let Reply { bridge, name, id, done, value, error } = reply;
+            self.rare(What::Reply { bridge, name, id, done, value: shown(value), error });
         }
     }
 
@@ -162,7 +187,7 @@ impl Engine {
     pub(super) fn finish(&mut self) {
         self.report_changes();
         if !self.robots.is_empty() {
-            self.report_outputs();
+            self.report_sent();
         }
         if self.faults.any_unreported() {
             self.report_faults();
@@ -175,9 +200,9 @@ impl Engine {
         }
     }
 
-    fn report_outputs(&mut self) {
-        for (bridge, name, value) in self.robots.take_outputs(&self.store.lua) {
-            self.rare(What::Output { bridge, name, value });
+    fn report_sent(&mut self) {
+        for sent in self.robots.take_sent() {
+            self.rare(sent);
         }
     }
 

@@ -12,6 +12,7 @@ mod faults;
 pub mod findings;
 mod force;
 mod machine;
+mod message;
 mod met;
 mod modules;
 mod note;
@@ -28,7 +29,7 @@ pub mod time;
 mod why;
 
 pub use command::{BreakAt, Breaking, Command, Explain, OnEdit, OnError, Saves};
-pub use engine::{Engine, Input, Options};
+pub use engine::{Engine, Input, Options, Reply};
 pub use obey::Refused;
 pub use record::{Record, What};
 pub use time::Time;

@@ -2,6 +2,8 @@
 
 use std::sync::Arc;
 
+use lrp_bridge::{Description, Found};
+pub use lrp_bridge::{Health, Level};
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 
@@ -61,7 +63,7 @@ pub enum What {
     Discard {
         machine: Path,
     },
-    /// `by`: the path of the state, event or machine whose block did it; `init`; or `command`.
+    /// `by`: the path of the state, event or machine whose block did it; `init`; `command`; or a robot that answered a call.
     Set {
         var: Path,
         value: Value,
@@ -83,11 +85,21 @@ pub enum What {
         id: u64,
         arguments: Value,
     },
+    /// A call is no longer wanted.
+    Cancel {
+        bridge: Path,
+        id: u64,
+    },
+    /// How far a call has come, or with `done` how it ended; with an error it failed.
     Reply {
         bridge: Path,
         name: Path,
         id: u64,
+        done: bool,
+        #[serde(skip_serializing_if = "Value::is_null", default)]
         value: Value,
+        #[serde(skip_serializing_if = "Option::is_none", default)]
+        error: Option<String>,
     },
     Log(Log),
     Error(Fault),
@@ -122,6 +134,16 @@ pub enum What {
         late: f64,
     },
     Bridge(BridgeState),
+    /// What a bridge offers, whenever that has changed.
+    Offer {
+        bridge: Path,
+        description: Box<Description>,
+    },
+    /// What a bridge sees of its robot's world, whenever that has changed.
+    Found {
+        bridge: Path,
+        found: Vec<Found>,
+    },
 }
 
 impl What {
@@ -142,6 +164,7 @@ impl What {
         "input",
         "output",
         "call",
+        "cancel",
         "reply",
         "log",
         "error",
@@ -154,6 +177,8 @@ impl What {
         "skip",
         "status",
         "bridge",
+        "offer",
+        "found",
     ];
 }
 
@@ -280,15 +305,6 @@ pub struct Log {
     pub line: usize,
 }
 
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Level {
-    Debug,
-    Info,
-    Warn,
-    Error,
-}
-
 impl From<crate::lua::Level> for Level {
     fn from(level: crate::lua::Level) -> Level {
         match level {
@@ -359,14 +375,6 @@ pub struct BridgeState {
     /// A simulator's world, so that a screen can draw it.
     #[serde(skip_serializing_if = "Option::is_none", default)]
     pub world: Option<WorldText>,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Health {
-    Connecting,
-    Up,
-    Lost,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]

@@ -1,18 +1,19 @@
-//! Robots as blocks see them: inputs as fields, outputs as functions. What they say goes in before a step, what they are
-//! told comes out after it. Knows nothing of bridges.
+//! Robots as blocks see them: inputs as fields, outputs and calls as functions, devices as objects. What they say goes in
+//! before a step, what they are told comes out after it. Knows nothing of bridges.
 
 use std::collections::HashSet;
 use std::sync::Arc;
 
-use mlua::serde::{LuaSerdeExt, SerializeOptions};
-use mlua::{Function, Table};
-use serde_json::{Value, json};
+use lrp_bridge::{Argument, Function as Offered, Port, Scope};
+use mlua::{Function, IntoLua, Table};
+use serde_json::{Map, Value};
 
-use super::engine::Input;
+use super::engine::{Input, Reply};
+use super::message::{from_lua, to_lua};
+use super::record::What;
 use super::time::Time;
-use crate::lua::Lua;
+use crate::lua::{Lua, device_mark};
 use crate::model::Description;
-use crate::model::description::Scope;
 use crate::syntax::nearest::nearest;
 
 const OBJECT: &str = include_str!("robot.lua");
@@ -27,6 +28,7 @@ pub(super) struct Robots {
 struct Robot {
     name: Arc<str>,
     receive: Function,
+    answer: Function,
     take: Function,
     missed: Function,
     offer: Function,
@@ -43,20 +45,14 @@ pub(super) struct NoMessage {
 
 impl Robots {
     pub fn describe(&mut self, lua: &mut Lua, name: &str, description: &Description, stale: Option<Time>) {
-        let offer = json!({
-            "inputs": messages(&description.inputs),
-            "outputs": messages(&description.outputs),
-            "open": description.scope == Scope::Open,
-            "stale": stale.map(Time::ms),
-        });
+        let offer = offer(lua.mlua(), description, stale).expect("plain data becomes a Lua table");
         if let Some(robot) = self.robots.iter().find(|robot| &*robot.name == name) {
-            let offer = to_lua(lua.mlua(), &offer).expect("plain data becomes a Lua table");
             robot.offer.call::<()>(offer).expect("replacing a table can't fail");
             return;
         }
         let mut made = None;
         lua.global(name, |lua| {
-            let (object, engine) = make(lua, name, &offer)?;
+            let (object, engine) = make(lua, name, offer)?;
             made = Some(engine);
             Ok(mlua::Value::Table(object))
         })
@@ -66,6 +62,7 @@ impl Robots {
         self.robots.push(Robot {
             name: name.into(),
             receive: function("receive"),
+            answer: function("answer"),
             take: function("take"),
             missed: function("missed"),
             offer: function("offer"),
@@ -84,18 +81,23 @@ impl Robots {
         }
     }
 
-    /// What was sent since the last call, in order: robot, output, message.
-    pub fn take_outputs(&self, lua: &Lua) -> Vec<(Arc<str>, Arc<str>, Value)> {
-        let mut outputs = Vec::new();
+    /// How far a call has come, or how it ended.
+    pub fn answer(&self, lua: &Lua, reply: &Reply) {
+        let Some(robot) = self.robots.iter().find(|robot| robot.name == reply.bridge) else { return };
+        if let Ok(value) = to_lua(lua.mlua(), &reply.value) {
+            // Only a lack of memory can make this fail: the call seems to go on then.
+            let _ = robot.answer.call::<()>((reply.id, reply.done, value, reply.error.as_deref()));
+        }
+    }
+
+    /// What was sent since the last call, in order: outputs, calls, and calls that are no longer wanted.
+    pub fn take_sent(&self) -> Vec<What> {
+        let mut all = Vec::new();
         for robot in &self.robots {
             let Ok(Some(sent)) = robot.take.call::<Option<Vec<Table>>>(()) else { continue };
-            for pair in sent {
-                let (Ok(name), Ok(message)) = (pair.get::<String>(1), pair.get::<mlua::Value>(2)) else { continue };
-                let message = lua.mlua().from_value(message).unwrap_or(Value::Null);
-                outputs.push((robot.name.clone(), name.into(), message));
-            }
+            all.extend(sent.iter().filter_map(|item| sent_item(&robot.name, item)));
         }
-        outputs
+        all
     }
 
     /// Whether a block failed because it indexed an input that has had no message.
@@ -120,27 +122,107 @@ impl Robots {
     }
 }
 
-fn make(lua: &mlua::Lua, name: &str, offer: &Value) -> mlua::Result<(Table, Table)> {
+fn sent_item(bridge: &Arc<str>, item: &Table) -> Option<What> {
+    let bridge = Arc::clone(bridge);
+    if let Ok(id) = item.get::<u64>("cancelled") {
+        return Some(What::Cancel { bridge, id });
+    }
+    let name: Arc<str> = item.get::<String>(1).ok()?.into();
+    let value: mlua::Value = item.get(2).ok()?;
+    match (item.get::<Option<u64>>(3).ok()?, value) {
+        (None, message) => Some(What::Output { bridge, name, value: from_lua(&message).unwrap_or_default() }),
+        (Some(id), mlua::Value::Table(arguments)) => {
+            let count: usize = item.get("n").ok()?;
+            let argument = |index| from_lua(&arguments.raw_get(index).ok()?);
+            let arguments = (1..=count).map(|index| argument(index).unwrap_or_default()).collect();
+            Some(What::Call { bridge, name, id, arguments: Value::Array(arguments) })
+        }
+        (Some(_), _) => None,
+    }
+}
+
+fn make(lua: &mlua::Lua, name: &str, offer: Table) -> mlua::Result<(Table, Table)> {
     let now: Function = lua.globals().get("now")?;
-    let near = lua.create_function(|_, (wanted, ports): (mlua::Value, Table)| {
+    let near = lua.create_function(|_, (wanted, lists): (mlua::Value, Vec<Table>)| {
         let mut known = Vec::new();
-        for list in ["inputs", "outputs"] {
-            for pair in ports.get::<Table>(list)?.pairs::<String, mlua::Value>() {
+        for list in lists {
+            for pair in list.pairs::<String, mlua::Value>() {
                 known.push(pair?.0);
             }
         }
         let wanted = wanted.to_string()?;
         Ok(nearest(&wanted, known.iter().map(String::as_str)).map(str::to_string))
     })?;
-    lua.load(OBJECT).set_name("=robot").call((name, to_lua(lua, offer)?, now, near))
+    let mark = mlua::LightUserData(device_mark().cast_mut());
+    lua.load(OBJECT).set_name("=robot").call((name, offer, now, near, mark))
 }
 
-fn messages(ports: &[crate::model::description::Port]) -> Value {
-    Value::Object(ports.iter().map(|port| (port.name.clone(), port.message.clone())).collect())
+/// What a robot offers, as robot.lua reads it.
+fn offer(lua: &mlua::Lua, description: &Description, stale: Option<Time>) -> mlua::Result<Table> {
+    let offer = lua.create_table()?;
+    offer.set("inputs", messages(lua, &description.inputs)?)?;
+    offer.set("outputs", messages(lua, &description.outputs)?)?;
+    let calls = lua.create_table()?;
+    for call in &description.calls {
+        calls.set(call.name.as_str(), arguments(lua, &call.arguments)?)?;
+    }
+    offer.set("calls", calls)?;
+    let devices = lua.create_table()?;
+    for device in &description.devices {
+        devices.set(device.name.as_str(), functions(lua, &device.functions)?)?;
+    }
+    offer.set("devices", devices)?;
+    offer.set("open", description.scope == Scope::Open)?;
+    offer.set("stale", stale.map(Time::ms))?;
+    Ok(offer)
 }
 
-fn to_lua(lua: &mlua::Lua, value: &Value) -> mlua::Result<mlua::Value> {
-    let plain =
-        SerializeOptions::new().serialize_none_to_null(false).serialize_unit_to_null(false).set_array_metatable(false);
-    lua.to_value_with(value, plain)
+fn messages(lua: &mlua::Lua, ports: &[Port]) -> mlua::Result<Table> {
+    let messages = lua.create_table()?;
+    for port in ports {
+        messages.set(port.name.as_str(), shape(lua, &port.message)?)?;
+    }
+    Ok(messages)
+}
+
+fn functions(lua: &mlua::Lua, offered: &[Offered]) -> mlua::Result<Table> {
+    let functions = lua.create_table()?;
+    for function in offered {
+        let entry = lua.create_table()?;
+        entry.set("reads", function.reads.as_deref())?;
+        entry.set("arguments", arguments(lua, &function.arguments)?)?;
+        functions.set(function.name.as_str(), entry)?;
+    }
+    Ok(functions)
+}
+
+fn arguments(lua: &mlua::Lua, wanted: &[Argument]) -> mlua::Result<Table> {
+    let arguments = lua.create_table()?;
+    for argument in wanted {
+        let entry = lua.create_table()?;
+        entry.set("name", argument.name.as_str())?;
+        entry.set("optional", argument.default.is_some())?;
+        entry.set("default", argument.default.as_ref().map(|value| to_lua(lua, value)).transpose()?)?;
+        if !argument.message.is_null() {
+            entry.set("message", shape(lua, &argument.message)?)?;
+        }
+        arguments.push(entry)?;
+    }
+    Ok(arguments)
+}
+
+/// A message's defaults. What takes anything is there, but as nothing that a default could be.
+fn shape(lua: &mlua::Lua, message: &Value) -> mlua::Result<mlua::Value> {
+    let table = |fields: &Map<String, Value>| {
+        let table = lua.create_table()?;
+        for (field, value) in fields {
+            table.raw_set(field.as_str(), shape(lua, value)?)?;
+        }
+        table.into_lua(lua)
+    };
+    match message {
+        Value::Null => Ok(mlua::Value::NULL),
+        Value::Object(fields) if !fields.contains_key("lua") => table(fields),
+        value => to_lua(lua, value),
+    }
 }

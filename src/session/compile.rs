@@ -7,18 +7,21 @@ use super::files::{Disk, Files};
 use super::gather::{Gathered, Gathering};
 use super::live::folder;
 use super::modules;
-use super::robots::description;
+use super::plugins::Plugins;
+use super::robots::{Offered, offered};
 use super::watch::Watched;
 use crate::lua::{Access, Checker};
 use crate::model::blocks::syntax_diagnostic;
 use crate::model::checks::check;
 use crate::model::modules::collect;
-use crate::model::{File, Program, Robot, alias, resolve_files};
+use crate::model::{Description, File, Program, Robot, alias, resolve_files};
 use crate::syntax::{Code, Diagnostic, FileId, Source, Span};
 
 pub struct Compiler {
     checker: Checker,
     robots: Vec<Robot>,
+    /// What bridges that are no part of lrp offer is asked of them.
+    plugins: Plugins,
     files: Box<dyn Files>,
     /// What was read for the last program.
     gathered: Vec<Gathered>,
@@ -39,6 +42,7 @@ impl Compiler {
         Compiler {
             checker: Checker::default(),
             robots,
+            plugins: Plugins::default(),
             files: Box::new(Disk),
             gathered: Vec::new(),
             reached: Vec::new(),
@@ -49,6 +53,11 @@ impl Compiler {
     /// For blocks that will have this access.
     pub fn with_access(self, access: Access) -> Compiler {
         Compiler { checker: Checker::new(access), ..self }
+    }
+
+    /// For programs whose robots may be plugins.
+    pub fn with_plugins(self, plugins: Plugins) -> Compiler {
+        Compiler { plugins, ..self }
     }
 
     /// For programs whose other files come from elsewhere.
@@ -99,11 +108,24 @@ impl Compiler {
         match broken {
             true => Err(Rejected { sources: program.sources, diagnostics: program.findings }),
             false => {
-                let offered: Vec<_> = program.bridges.iter().map(description).collect();
+                let offered = self.offered(&mut program);
                 check(&mut program, &offered, &self.checker);
                 Ok(program)
             }
         }
+    }
+
+    /// What each robot offers, as far as it can be known beforehand.
+    fn offered(&self, program: &mut Program) -> Vec<Option<Description>> {
+        let mut all = Vec::new();
+        for bridge in &program.bridges {
+            let span = bridge.span;
+            let text = &program.sources[span.file.0 as usize].text[span.start as usize..span.end as usize];
+            let Offered { description, findings } = offered(bridge, text, &self.plugins);
+            program.findings.extend(findings);
+            all.push(description);
+        }
+        all
     }
 
     fn resolve(&mut self, running: &Program) -> Program {

@@ -1,17 +1,26 @@
 //! The engine with its robots: samples what they say, steps, hands over what they are told. Has no clock and no thread:
 //! whoever owns one says when a step is due.
 
+mod robot;
+mod sent;
+
 use std::path::Path;
 use std::sync::Arc;
+use std::thread::JoinHandle;
 
+use lrp_bridge::{Call, Item, Order, Output, Scope};
 use serde_json::Value;
 
+use self::robot::{Robot, hear, messages};
+use self::sent::{Delivery, Sent, cancel, send};
 use super::findings::errors_first;
 use super::modules;
+use super::plugins::Said;
 use super::robots::{Bridge, Concern, Problems, Stopper, Workshop};
+use crate::model::literal::written;
 use crate::model::{self, Description, Edit, Program};
 use crate::runtime::record::{BridgeState, Health};
-use crate::runtime::{Command, Engine, Input, Options, Record, Refused, Time, What};
+use crate::runtime::{Command, Engine, Input, Options, Record, Refused, Reply, Time, What};
 
 pub struct Driver {
     engine: Engine,
@@ -19,16 +28,14 @@ pub struct Driver {
     robots: Vec<Robot>,
     /// Said by a test instead of a robot, for the next step.
     injected: Vec<Input>,
+    /// What robots said of calls, for the next step.
+    replies: Vec<Reply>,
     /// What an edit or a forced state sent while paused, or the step that a breakpoint ended: it leaves with the next step.
-    held: Vec<(Arc<str>, Arc<str>, Value)>,
+    held: Vec<Sent>,
+    /// Robots that are let go.
+    parting: Vec<JoinHandle<()>>,
     /// A robot's file was saved with mistakes: it goes by what it read before.
     world_is_broken: bool,
-}
-
-struct Robot {
-    form: model::Bridge,
-    /// None: it couldn't be made; what is sent to it is lost.
-    bridge: Option<Box<dyn Bridge>>,
 }
 
 /// Takes records as they come.
@@ -41,7 +48,9 @@ impl Driver {
             workshop,
             robots: Vec::new(),
             injected: Vec::new(),
+            replies: Vec::new(),
             held: Vec::new(),
+            parting: Vec::new(),
             world_is_broken: false,
         }
     }
@@ -68,9 +77,55 @@ impl Driver {
         self.injected.push(input);
     }
 
+    /// What became of a call, as if a robot had said it.
+    pub fn reply(&mut self, reply: Reply) {
+        self.replies.push(reply);
+    }
+
+    /// What a robot offers.
+    pub fn offer(&self, robot: &str) -> Option<Description> {
+        let robot = self.robots.iter().find(|known| &*known.form.name == robot)?;
+        robot.bridge.as_ref().map(|bridge| bridge.description())
+    }
+
+    /// Whether every robot is there. Without one that isn't, the program may begin all the same.
+    pub fn is_ready(&self) -> bool {
+        self.robots.iter().all(|robot| robot.bridge.as_ref().is_none_or(|bridge| bridge.is_ready()))
+    }
+
+    /// Connects the robots of a program that is to be loaded once they are there.
+    pub fn prepare(&mut self, edit: &Edit, sink: Sink) {
+        let mut program = Arc::clone(&edit.program);
+        for state in self.connect(&mut program) {
+            self.engine.say(What::Bridge(state));
+        }
+        self.hand_over(Delivery::Now, sink);
+    }
+
+    /// Hears what robots have to say beside messages: also while nothing steps.
+    pub fn attend(&mut self, sink: Sink) {
+        let Driver { engine, robots, replies, .. } = self;
+        let mut sets = Vec::new();
+        for robot in robots {
+            let Some(bridge) = &mut robot.bridge else { continue };
+            for said in bridge.listen() {
+                match said {
+                    Said::Set { id, variable, value } => sets.push((robot.form.name.clone(), id, variable, value)),
+                    said => hear(engine, replies, &robot.form, &**bridge, said),
+                }
+            }
+        }
+        for (robot, id, variable, value) in sets {
+            self.set_for(&robot, id, variable, &value);
+        }
+        self.hand_over(Delivery::Now, sink);
+    }
+
     /// One step at a program time not before that of the last one.
     pub fn step(&mut self, now: Time, sink: Sink) {
         self.deliver_held();
+        self.attend(sink);
+        self.engine.answer(std::mem::take(&mut self.replies));
         let mut inputs = Vec::new();
         for robot in &mut self.robots {
             let Some(bridge) = &mut robot.bridge else { continue };
@@ -116,6 +171,19 @@ impl Driver {
         };
         self.hand_over(delivery, sink);
         result
+    }
+
+    /// Somebody on a robot's side changes a variable, as a person at the screen would.
+    fn set_for(&mut self, robot: &str, id: u64, var: String, value: &Value) {
+        let result = match written(value, "") {
+            Some(value) => self.engine.command(Command::Set { var, value }),
+            None => Err(Refused(format!("`{value}` can't be the value of a variable"))),
+        };
+        let answer = Order::Answer { id, error: result.err().map(|refused| refused.0) };
+        let robot = self.robots.iter_mut().find(|known| &*known.form.name == robot);
+        if let Some(bridge) = robot.and_then(|robot| robot.bridge.as_mut()) {
+            bridge.tell(answer);
+        }
     }
 
     /// Brings every robot to a halt, and says so.
@@ -180,7 +248,10 @@ impl Driver {
         for robot in &self.robots {
             let (description, stale) = match &robot.bridge {
                 Some(bridge) => (bridge.description(), bridge.stale()),
-                None => (super::robots::description(&robot.form).unwrap_or_else(|| open(&robot.form)), None),
+                None => {
+                    let known = super::robots::description(&robot.form, &self.workshop.plugins);
+                    (known.unwrap_or_else(open), None)
+                }
             };
             self.engine.describe(&robot.form.name, &description, stale);
         }
@@ -196,7 +267,7 @@ impl Driver {
         let mut old = std::mem::take(&mut self.robots);
         let mut states = Vec::new();
         for form in program.bridges.clone() {
-            let known = old.iter().position(|robot| same_form(&robot.form, &form) && robot.bridge.is_some());
+            let known = old.iter_mut().position(|robot| robot.goes_on_as(&form));
             let robot = match known {
                 Some(index) => Robot { form, ..old.swap_remove(index) },
                 None => {
@@ -207,9 +278,7 @@ impl Driver {
             };
             self.robots.push(robot);
         }
-        for bridge in old.iter_mut().filter_map(|robot| robot.bridge.as_mut()) {
-            bridge.stop();
-        }
+        self.part(old);
         states
     }
 
@@ -231,19 +300,38 @@ impl Driver {
         }
     }
 
+    fn part(&mut self, robots: Vec<Robot>) {
+        for mut bridge in robots.into_iter().filter_map(|robot| robot.bridge) {
+            bridge.stop();
+            self.parting.extend(bridge.part());
+        }
+        self.parting.retain(|parting| !parting.is_finished());
+    }
+
     fn hand_over(&mut self, delivery: Delivery, sink: Sink) {
         let Driver { engine, robots, held, .. } = self;
         let mut timing = if engine.has_paused() { Delivery::Held } else { delivery };
+        let mut now: Vec<Sent> = Vec::new();
         engine.drain(|record| {
             match &record.what {
-                // What pausing itself sends, to bring a robot to rest, is not to wait.
-                What::Pause { .. } => timing = delivery,
-                What::Output { bridge, name, value } => match timing {
-                    Delivery::Now => send(robots, bridge, name, value),
-                    Delivery::Held => held.push((bridge.clone(), name.clone(), value.clone())),
-                },
+                What::Pause { .. } => {
+                    // What pausing itself sends, to bring a robot to rest, is not to wait.
+                    timing = delivery;
+                    robots.iter_mut().filter_map(Robot::halting_on_pause).for_each(|bridge| bridge.stop());
+                }
+                What::Output { bridge, name, value } => {
+                    let output = Output { output: name.to_string(), value: value.clone() };
+                    timing.of(&mut now, held).push((bridge.clone(), Item::Output(output)));
+                }
+                What::Call { bridge, name, id, arguments } => {
+                    let arguments = arguments.as_array().cloned().unwrap_or_default();
+                    let call = Call { call: name.to_string(), id: *id, arguments };
+                    timing.of(&mut now, held).push((bridge.clone(), Item::Call(call)));
+                }
+                What::Cancel { bridge, id } => cancel(robots, &mut [&mut now, held], bridge, *id),
                 What::Stop { .. } => {
                     held.clear();
+                    now.clear();
                     for bridge in robots.iter_mut().filter_map(|robot| robot.bridge.as_mut()) {
                         bridge.stop();
                     }
@@ -252,38 +340,26 @@ impl Driver {
             }
             sink(record);
         });
+        send(robots, now);
     }
 
     fn deliver_held(&mut self) {
-        for (bridge, name, value) in self.held.drain(..) {
-            send(&mut self.robots, &bridge, &name, &value);
+        send(&mut self.robots, std::mem::take(&mut self.held));
+    }
+}
+
+impl Drop for Driver {
+    /// Robots in other processes are given the time to come to rest.
+    fn drop(&mut self) {
+        let robots = std::mem::take(&mut self.robots);
+        self.part(robots);
+        for parting in self.parting.drain(..) {
+            // A keeper that failed has let go of its process.
+            let _ = parting.join();
         }
     }
 }
 
-/// What a robot has said since it was last asked.
-fn messages(name: &Arc<str>, bridge: &mut dyn Bridge) -> Vec<Input> {
-    let said = bridge.sample().into_iter();
-    said.map(|(input, value)| Input { bridge: Arc::clone(name), name: input, value }).collect()
-}
-
-#[derive(Clone, Copy)]
-enum Delivery {
-    Now,
-    Held,
-}
-
-fn send(robots: &mut [Robot], bridge: &str, name: &str, value: &Value) {
-    let robot = robots.iter_mut().find(|robot| &*robot.form.name == bridge);
-    if let Some(bridge) = robot.and_then(|robot| robot.bridge.as_mut()) {
-        bridge.send(name, value);
-    }
-}
-
-fn same_form(a: &model::Bridge, b: &model::Bridge) -> bool {
-    a.name == b.name && a.kind == b.kind && a.config == b.config
-}
-
-fn open(form: &model::Bridge) -> Description {
-    Description { kind: form.kind.to_string(), scope: model::description::Scope::Open, ..Description::default() }
+fn open() -> Description {
+    Description { scope: Scope::Open, ..Description::default() }
 }

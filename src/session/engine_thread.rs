@@ -12,7 +12,7 @@ use super::pace::{Due, Pace, Rate};
 use super::robots::{Stopper, Workshop};
 use super::trace::Clock;
 use super::warden::Warden;
-use crate::model::Program;
+use crate::model::{Edit, Program};
 use crate::runtime::{Command, Options, Record, Time, What};
 
 #[derive(Clone, Debug)]
@@ -98,8 +98,10 @@ const BATCH: Duration = Duration::from_millis(10);
 /// Batches that may wait to be taken before the next step as fast as possible.
 const PENDING: usize = 32;
 /// How long the thread may take to end, once the robots are halted. A block that can't be stopped would take for ever.
-const END: Duration = Duration::from_secs(2);
+const END: Duration = Duration::from_secs(5);
 const STATUS: Duration = Duration::from_millis(500);
+/// While nothing steps, robots are heard this often.
+const ATTEND: Duration = Duration::from_millis(50);
 
 /// Gives a required Lua module's text, or why there is none.
 pub type Library = Box<dyn Fn(&str) -> Result<String, String> + Send>;
@@ -186,6 +188,8 @@ struct Loop<'n, N: Fn(News)> {
     flushed: Instant,
     started: Instant,
     loaded: bool,
+    /// The first program, until its robots are there or somebody wants it to begin without them.
+    first: Option<Edit>,
     status: Status,
 }
 
@@ -223,6 +227,7 @@ impl<'n, N: Fn(News)> Loop<'n, N> {
             flushed: now,
             started: now,
             loaded: false,
+            first: None,
             status: Status::new(),
         }
     }
@@ -238,6 +243,10 @@ impl<'n, N: Fn(News)> Loop<'n, N> {
                 Next::Step => self.step().then_some(End::TimeIsUp),
                 Next::Nothing => None,
             };
+            if !self.runs() {
+                self.driver.attend(&mut |record| self.batch.push(record));
+                self.begin_if_ready();
+            }
             self.report_status();
             if end.is_some() || self.flushed.elapsed() >= BATCH {
                 self.flush();
@@ -252,7 +261,7 @@ impl<'n, N: Fn(News)> Loop<'n, N> {
 
     fn next(&mut self, inbox: &Receiver<Message>) -> Next {
         let wait = match (self.runs(), self.pacing.clock) {
-            (false, _) => STATUS,
+            (false, _) => ATTEND,
             (true, _) if self.is_ahead() => BATCH,
             (true, Clock::Virtual) => Duration::ZERO,
             (true, Clock::Real) => self.pace.wait(self.started.elapsed()),
@@ -283,7 +292,31 @@ impl<'n, N: Fn(News)> Loop<'n, N> {
         self.loaded && !self.driver.engine().is_paused()
     }
 
+    /// The first program waits for its robots, whatever is edited meanwhile.
+    fn begin_if_ready(&mut self) {
+        if self.driver.is_ready()
+            && let Some(first) = self.first.take()
+        {
+            self.obey(Command::Load(first));
+        }
+    }
+
     fn command(&mut self, command: Command) {
+        match command {
+            Command::Load(edit) if !self.loaded => {
+                self.driver.prepare(&edit, &mut |record| self.batch.push(record));
+                self.first = Some(edit);
+                self.begin_if_ready();
+            }
+            Command::Resume if self.first.is_some() => {
+                let first = self.first.take().map(Command::Load);
+                first.into_iter().for_each(|load| self.obey(load));
+            }
+            command => self.obey(command),
+        }
+    }
+
+    fn obey(&mut self, command: Command) {
         let real = self.started.elapsed();
         let loads = matches!(command, Command::Load(_) | Command::ApplyHeld);
         match &command {

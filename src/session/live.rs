@@ -8,8 +8,9 @@ use super::compile::Compiler;
 use super::edits::{Edits, Heard};
 use super::engine_thread::{Commands, EngineThread, News, Pacing};
 use super::loader::{self, Unreadable};
+use super::plugins::Plugins;
 use super::robots::{Robots, Workshop};
-use super::trace::Conditions;
+use super::trace::{Clock, Conditions};
 use crate::model::Robot;
 use crate::runtime::Options;
 use crate::syntax::Source;
@@ -38,6 +39,7 @@ pub struct Setup {
     pub pacing: Pacing,
     /// Chosen on the command line.
     pub robots: Vec<Robot>,
+    pub plugins: Plugins,
 }
 
 impl Setup {
@@ -64,9 +66,13 @@ impl Session {
         let access = setup.options.access;
         let heard = Heard::listen();
         let library = heard.library(folder.clone());
-        let workshop = Workshop { folder, seed: setup.options.seed, robots: Robots::AsProgrammed };
+        let robots = match setup.pacing.clock {
+            Clock::Real => Robots::AsProgrammed,
+            Clock::Virtual => Robots::Simulated,
+        };
+        let workshop = Workshop { folder, seed: setup.options.seed, robots, plugins: setup.plugins.clone() };
         let engine = EngineThread::start(setup.options, workshop, library, setup.pacing, news);
-        let compiler = move || Compiler::new(setup.robots).with_access(access);
+        let compiler = move || Compiler::new(setup.robots).with_access(access).with_plugins(setup.plugins);
         let edits = heard.watch(setup.file, source, compiler, engine.commands().clone());
         Ok(Session { _edits: edits.map_err(NotStarted::System)?, engine })
     }

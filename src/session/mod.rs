@@ -12,6 +12,7 @@ pub mod live;
 pub mod loader;
 pub mod modules;
 pub mod pace;
+pub mod plugins;
 pub mod robots;
 pub mod settled;
 pub mod signals;

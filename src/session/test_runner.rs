@@ -3,6 +3,7 @@
 
 mod api;
 mod bench;
+mod calls;
 mod deadline;
 mod failure;
 mod functions;

@@ -15,6 +15,8 @@ pub struct Trace {
     path: PathBuf,
     /// Until the header is written.
     conditions: Option<Conditions>,
+    /// Robots that come up before the program is loaded: told after the header.
+    early: Vec<Record>,
     state: State,
     /// Why it ends early, until told.
     trouble: Option<String>,
@@ -62,7 +64,14 @@ impl Trace {
             Some("-") => Box::new(BufWriter::new(io::stdout())),
             _ => Box::new(BufWriter::new(File::create(path)?)),
         };
-        Ok(Trace { out, path: path.to_path_buf(), conditions: Some(conditions), state: State::Open, trouble: None })
+        Ok(Trace {
+            out,
+            path: path.to_path_buf(),
+            conditions: Some(conditions),
+            early: Vec::new(),
+            state: State::Open,
+            trouble: None,
+        })
     }
 
     fn header(&mut self, conditions: &Conditions, files: &[record::File]) {
@@ -75,13 +84,25 @@ impl Trace {
 
     /// The header goes before the first one, with the program's texts where that is a load.
     pub fn record(&mut self, record: &Record) {
+        match &record.what {
+            What::Bridge(_) | What::Offer { .. } | What::Found { .. } | What::Log(_) if self.conditions.is_some() => {
+                self.early.push(record.clone());
+            }
+            What::Load(load) => self.begin(&load.files),
+            _ => self.begin(&[]),
+        }
+        if self.conditions.is_none() {
+            self.line(record);
+        }
+    }
+
+    fn begin(&mut self, files: &[record::File]) {
         if let Some(conditions) = self.conditions.take() {
-            match &record.what {
-                What::Load(load) => self.header(&conditions, &load.files),
-                _ => self.header(&conditions, &[]),
+            self.header(&conditions, files);
+            for record in std::mem::take(&mut self.early) {
+                self.line(&record);
             }
         }
-        self.line(record);
     }
 
     pub fn flush(&mut self) {
@@ -124,6 +145,7 @@ impl Trace {
 
 impl Drop for Trace {
     fn drop(&mut self) {
+        self.begin(&[]);
         self.flush();
     }
 }

@@ -10,6 +10,7 @@ use lrp::model::{self, Program};
 use lrp::runtime::{Command, Options, Time};
 use lrp::session::compile::Compiler;
 use lrp::session::driver::Driver;
+use lrp::session::plugins::Plugins;
 use lrp::session::robots::{Robots, Workshop};
 use lrp::syntax::Source;
 
@@ -47,7 +48,7 @@ fn compile(saves: &Receiver<String>, compiled: &Sender<Command>) {
 
 /// The compiler's thread ends with the saves.
 fn run(size: Size, blocks: Option<usize>, saves: Sender<String>, commands: &Receiver<Command>) -> Vec<Duration> {
-    let workshop = Workshop { folder: ".".into(), seed: 1, robots: Robots::Fake };
+    let workshop = Workshop { folder: ".".into(), seed: 1, robots: Robots::Fake, plugins: Plugins::default() };
     let mut driver = Driver::new(Options::default(), workshop);
     let mut gaps = Vec::with_capacity(EDITS);
     saves.send(program(size, Edit::Nothing)).expect("the compiler waits for saves");

@@ -243,10 +243,7 @@ fn bridges_that_cannot_be() {
     fs::metadata("/dev/zero").unwrap();
     for (form, says) in [
         ("sjm", "error: there is no bridge of kind `sjm`; did you mean `sim`?"),
-        (
-            "ros2",
-            "error: there is no bridge of kind `ros2`; there is: sim; `--bridge robot=sim` runs the program in the simulator",
-        ),
+        ("pr2000", "error: there is no bridge of kind `pr2000`; there is: "),
         ("sim [world = 'none.world']", "error: the world can't be read: none.world: no such file"),
         ("sim [world = '.']", "error: the world can't be read: .: this is a folder"),
         ("sim [world = '/dev/zero']", "error: the world can't be read: /dev/zero: this is a pipe or a device"),

@@ -6,6 +6,7 @@ use std::fs;
 use lrp::runtime::{Command, OnError, Options, Time, What};
 use lrp::session::compile::Compiler;
 use lrp::session::driver::Driver;
+use lrp::session::plugins::Plugins;
 use lrp::session::robots::{Robots, Workshop};
 use lrp::syntax::Source;
 
@@ -27,7 +28,8 @@ struct Rig {
 
 impl Rig {
     fn paused_in_b(text: &str, on_error: OnError) -> Rig {
-        let workshop = Workshop { folder: ".".into(), seed: 1, robots: Robots::AsProgrammed };
+        let workshop =
+            Workshop { folder: ".".into(), seed: 1, robots: Robots::AsProgrammed, plugins: Plugins::default() };
         let driver = Driver::new(Options { on_error, ..Options::default() }, workshop);
         let Ok(program) = Compiler::new(Vec::new()).compile(Source::new("a.lrp", text)) else { panic!("it compiles") };
         let mut rig = Rig { driver, now: 0.0 };

@@ -7,6 +7,7 @@ use std::path::{Path, PathBuf};
 use lrp::runtime::{Options, Time, What};
 use lrp::session::compile::{Compiler, Rejected};
 use lrp::session::driver::Driver;
+use lrp::session::plugins::Plugins;
 use lrp::session::robots::{Robots, Workshop};
 use lrp::syntax::{Code, Source};
 
@@ -52,7 +53,8 @@ fn sections() -> Vec<Section> {
 
 /// The codes of what is found in a program, and of what goes wrong in its first seconds where nothing is.
 fn codes(text: &str, files: &Shelf) -> BTreeSet<String> {
-    let workshop = || Workshop { folder: PathBuf::new(), seed: 1, robots: Robots::AsProgrammed };
+    let workshop =
+        || Workshop { folder: PathBuf::new(), seed: 1, robots: Robots::AsProgrammed, plugins: Plugins::default() };
     let (program, diagnostics) =
         match Compiler::new(Vec::new()).with_files(files.clone()).compile(Source::new("example.lrp", text)) {
             Err(Rejected { diagnostics, .. }) => (None, diagnostics),

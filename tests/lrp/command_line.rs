@@ -278,7 +278,7 @@ fn bridges_are_listed() {
     ok(&said);
     assert!(["light", "bumper", "range", "odom", "move"].iter().all(|port| said.out.contains(port)));
     let said = lrp(root(), &["bridges", "smi"]);
-    assert_eq!((said.code, &*said.err), (Some(1), "lrp: there is no bridge of kind `smi`; there is: sim\n"));
+    assert_eq!((said.code, &*said.err), (Some(1), "lrp: there is no bridge of kind `smi`; did you mean `sim`?\n"));
 }
 
 #[test]

@@ -86,6 +86,7 @@ fn kind(what: &What) -> &'static str {
         What::Input { .. } => "input",
         What::Output { .. } => "output",
         What::Call { .. } => "call",
+        What::Cancel { .. } => "cancel",
         What::Reply { .. } => "reply",
         What::Log(_) => "log",
         What::Error(_) => "error",
@@ -97,6 +98,8 @@ fn kind(what: &What) -> &'static str {
         What::Stop { .. } => "stop",
         What::Skip { .. } => "skip",
         What::Status { .. } => "status",
+        What::Offer { .. } => "offer",
+        What::Found { .. } => "found",
         What::Bridge(_) => "bridge",
     }
 }

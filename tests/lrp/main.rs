@@ -31,6 +31,7 @@ mod mouse;
 mod panes;
 mod picture;
 mod plot;
+mod plugins;
 mod pty;
 mod quiet;
 mod renames;

@@ -3,6 +3,7 @@
 use lrp::runtime::{Command, Options, Time, What};
 use lrp::session::compile::Compiler;
 use lrp::session::driver::Driver;
+use lrp::session::plugins::Plugins;
 use lrp::session::robots::{Robots, Workshop};
 use lrp::syntax::Source;
 
@@ -11,7 +12,7 @@ const PROGRAM: &str = "(bridge robot sim)
 (spawn m s)";
 
 fn started() -> Driver {
-    let workshop = Workshop { folder: ".".into(), seed: 1, robots: Robots::AsProgrammed };
+    let workshop = Workshop { folder: ".".into(), seed: 1, robots: Robots::AsProgrammed, plugins: Plugins::default() };
     let mut driver = Driver::new(Options::default(), workshop);
     let Ok(program) = Compiler::new(Vec::new()).compile(Source::new("a.lrp", PROGRAM)) else { panic!("it compiles") };
     obey(&mut driver, Command::Load(program.into()));

@@ -10,6 +10,7 @@ use lrp::runtime::{BreakAt, Breaking, Command, Engine, Explain, Input, OnEdit, O
 use lrp::session::compile::{Compiler, Rejected};
 use lrp::session::driver::Driver;
 use lrp::session::findings;
+use lrp::session::plugins::Plugins;
 use lrp::session::robots::{Robots, Workshop};
 use lrp::syntax::Source;
 use lrp::ui::view::View;
@@ -50,7 +51,7 @@ impl Stage {
     /// `files`: those beside the program, by name.
     pub fn new(seed: u64, limit: Duration, files: Vec<(String, String)>) -> Stage {
         let options = Options { limits: Limits { time: limit, ..Limits::default() }, seed, ..Options::default() };
-        let workshop = Workshop { folder: PathBuf::from("."), seed, robots: Robots::Fake };
+        let workshop = Workshop { folder: PathBuf::from("."), seed, robots: Robots::Fake, plugins: Plugins::default() };
         let mut driver = Driver::new(options, workshop);
         let files = Shelf::of(files);
         let library = files.clone();

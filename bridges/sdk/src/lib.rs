@@ -42,9 +42,9 @@
 //! assert_eq!(lrp.input("heard"), json!({ "data": "hello" }));
 //! ```
 
-mod inbox;
 mod message;
 mod offer;
+mod orders;
 mod peer;
 mod robot;
 mod run;
@@ -54,6 +54,7 @@ use serde_json::Value;
 
 pub use message::{Active, Call, Event, Form, Health, Item, Level, Order, Output, Variable};
 pub use offer::{About, Argument, Description, Device, Found, Function, Port, Problem, Scope, Setting, Want};
+pub use orders::{End, Orders};
 pub use peer::Peer;
 pub use robot::Robot;
 pub use run::{run, run_on};

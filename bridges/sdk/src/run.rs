@@ -10,8 +10,8 @@ use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::thread::Builder;
 use std::time::Duration;
 
-use crate::inbox::{End, Inbox};
 use crate::message::{Event, Form, Item, Level, Order, Output};
+use crate::orders::{End, Orders};
 use crate::robot::Robot;
 use crate::{Bridge, News, PROTOCOL};
 
@@ -40,7 +40,7 @@ pub fn run_on<B: Bridge>(input: RawFd, output: RawFd) -> i32 {
 
 pub(crate) struct Conversation {
     robot: Robot,
-    inbox: Arc<Inbox>,
+    orders: Arc<Orders>,
     /// Called, from another thread, where a bridge doesn't end.
     give_up: fn(),
 }
@@ -48,35 +48,35 @@ pub(crate) struct Conversation {
 impl Conversation {
     fn of_process() -> Conversation {
         let conversation = Conversation::new(|| std::process::exit(HUNG));
-        watch_panics(&conversation.robot, &conversation.inbox);
+        watch_panics(&conversation.robot, &conversation.orders);
         conversation
     }
 
     pub fn new(give_up: fn()) -> Conversation {
-        Conversation { robot: Robot::default(), inbox: Arc::default(), give_up }
+        Conversation { robot: Robot::default(), orders: Arc::default(), give_up }
     }
 
     /// Until the input is closed.
     pub fn speak<B: Bridge>(self, input: impl Read + Send + 'static, mut output: impl Write + Send + 'static) -> i32 {
-        let Conversation { robot, inbox, give_up } = self;
+        let Conversation { robot, orders, give_up } = self;
         robot.say(Event::Hello { protocol: PROTOCOL, about: B::about() });
         let (alive, ended) = channel::<()>();
         let (written, all_written) = channel::<()>();
-        let (reading, writing) = (Arc::clone(&inbox), robot.clone());
-        let reader = Builder::new().name("orders".into()).spawn(move || {
-            read(input, &reading);
+        let (reading, telling, writing) = (Arc::clone(&orders), robot.clone(), robot.clone());
+        let reader = Builder::new().name("reader".into()).spawn(move || {
+            read(input, &reading, &telling);
             if ended.recv_timeout(END) == Err(RecvTimeoutError::Timeout) {
                 give_up();
             }
         });
-        let writer = Builder::new().name("events".into()).spawn(move || {
+        let writer = Builder::new().name("writer".into()).spawn(move || {
             let _written: Sender<()> = written;
             writing.write(&mut output);
         });
         if reader.is_err() || writer.is_err() {
             return HUNG;
         }
-        let code = serve::<B>(&robot, &inbox);
+        let code = serve::<B>(&robot, &orders);
         robot.close();
         // Perhaps nobody reads any more.
         let _ = all_written.recv_timeout(LAST_WORDS);
@@ -85,21 +85,24 @@ impl Conversation {
     }
 }
 
-fn read(input: impl Read, inbox: &Inbox) {
+fn read(input: impl Read, orders: &Orders, robot: &Robot) {
     for line in BufReader::new(input).lines() {
         let Ok(line) = line else { break };
         // What this version doesn't know is left out, so that a newer lrp can say more.
         if let Ok(order) = serde_json::from_str(&line) {
-            inbox.put(order);
+            match orders.put(order) {
+                0 => {}
+                count => robot.dropped("outputs and calls", count as u64),
+            }
         }
     }
-    inbox.end(End::Closed);
+    orders.end(End::Closed);
 }
 
-fn serve<B: Bridge>(robot: &Robot, inbox: &Inbox) -> i32 {
+fn serve<B: Bridge>(robot: &Robot, orders: &Orders) -> i32 {
     let mut bridge: Option<B> = None;
     loop {
-        let end = match inbox.take() {
+        let end = match orders.take() {
             Ok(order) => {
                 let obey = AssertUnwindSafe(|| obey(&mut bridge, order, robot));
                 catch_unwind(obey).err().map(|_| End::Panicked)
@@ -174,11 +177,11 @@ fn tell<B: Bridge>(bridge: &mut B, order: Order) {
 }
 
 /// A bridge with a panicked thread can't be relied on: it stops its robot and ends, and lrp starts it anew.
-fn watch_panics(robot: &Robot, inbox: &Arc<Inbox>) {
-    let (robot, inbox, usual) = (robot.clone(), Arc::clone(inbox), std::panic::take_hook());
+fn watch_panics(robot: &Robot, orders: &Arc<Orders>) {
+    let (robot, orders, usual) = (robot.clone(), Arc::clone(orders), std::panic::take_hook());
     std::panic::set_hook(Box::new(move |panic| {
         robot.log(Level::Error, format!("the bridge panicked: {panic}"));
-        inbox.end(End::Panicked);
+        orders.end(End::Panicked);
         usual(panic);
     }));
 }

@@ -152,6 +152,7 @@ fn without_lrp_it_stops_its_robot_and_ends() {
 fn a_panic_stops_the_robot_and_ends_it() {
     let mut lrp = diary();
     lrp.send("panic", Value::Null);
+    while lrp.event(Duration::from_secs(10)).is_some() {}
     assert_eq!(lrp.close(), 101);
 }
 

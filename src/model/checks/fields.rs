@@ -1,11 +1,11 @@
 //! Fields that are not there: of Lua's libraries, of robots, of their messages.
 
+use lrp_bridge::{Function, Port, Scope};
 use serde_json::Value;
 
 use crate::lua::{Checker, FieldKind, FieldUse};
 use crate::model::Description;
 use crate::model::blocks::{Role, place};
-use crate::model::description::{Port, Scope};
 use crate::model::program::*;
 use crate::model::suggestion::{listed, suggestion};
 use crate::syntax::nearest::nearest;
@@ -75,9 +75,16 @@ fn robot(used: &FieldUse, offer: &Description) -> Option<Wrong> {
     let (port, inner) = used.fields.split_first()?;
     match used.kind {
         FieldKind::Read if inner.is_empty() => unknown_port(used, port, offer),
-        FieldKind::Read => missing(used, &offer.input(port)?.message, inner),
-        FieldKind::Given => missing(used, &offer.output(port)?.message, inner),
-        FieldKind::Method => no_method(used, port, offer).filter(|_| inner.is_empty()),
+        FieldKind::Read => match functions(offer, port) {
+            Some(functions) => no_function(used, port, &inner[0], functions),
+            None => missing(used, &offer.input(port)?.message, inner),
+        },
+        FieldKind::Given => missing(used, sent(offer, port)?, inner),
+        FieldKind::Method => match (inner, functions(offer, port)) {
+            ([], _) => no_method(used, port, offer),
+            ([function], Some(functions)) => no_function(used, port, function, functions),
+            _ => None,
+        },
         FieldKind::Write if offer.output(port).is_some() && inner.is_empty() => Some(Wrong {
             message: format!("`{}.{port}` is an output and can't be assigned", used.name),
             help: format!("call it to send: `{}.{port}{{ .. }}`", used.name),
@@ -86,17 +93,51 @@ fn robot(used: &FieldUse, offer: &Description) -> Option<Wrong> {
     }
 }
 
+/// What a device can do.
+fn functions<'o>(offer: &'o Description, device: &str) -> Option<&'o [Function]> {
+    offer.devices.iter().find(|known| known.name == device).map(|device| device.functions.as_slice())
+}
+
+/// The message of an output, or the one that a call takes.
+fn sent<'o>(offer: &'o Description, port: &str) -> Option<&'o Value> {
+    let message = |call: &'o Function| call.arguments.first().map(|argument| &argument.message);
+    offer.output(port).map(|port| &port.message).or_else(|| offer.function(port).and_then(message))
+}
+
+fn no_function(used: &FieldUse, device: &str, wanted: &str, functions: &[Function]) -> Option<Wrong> {
+    let known: Vec<&str> = functions.iter().map(|function| function.name.as_str()).collect();
+    if known.contains(&wanted) {
+        return None;
+    }
+    let there = format!("it has: {}", listed(&known));
+    let help = match nearest(wanted, known.iter().copied()) {
+        Some(near) => format!("did you mean `{near}`? {there}"),
+        None => there,
+    };
+    Some(Wrong { message: format!("`{}.{device}` has no function `{wanted}`", used.name), help })
+}
+
 fn names(ports: &[Port]) -> Vec<&str> {
     ports.iter().map(|port| port.name.as_str()).collect()
 }
 
 fn unknown_port(used: &FieldUse, port: &str, offer: &Description) -> Option<Wrong> {
     let ports = offer.inputs.iter().chain(&offer.outputs).map(|port| port.name.as_str());
-    let known = ports.chain(offer.calls.iter().map(|call| call.name.as_str())).chain(["age"]);
+    let calls: Vec<&str> = offer.calls.iter().map(|call| call.name.as_str()).collect();
+    let devices: Vec<&str> = offer.devices.iter().map(|device| device.name.as_str()).collect();
+    let known = ports.chain(calls.iter().copied()).chain(devices.iter().copied()).chain(["age"]);
     if known.clone().any(|name| name == port) {
         return None;
     }
-    let there = format!("inputs: {}; outputs: {}", listed(&names(&offer.inputs)), listed(&names(&offer.outputs)));
+    let lists = [
+        ("inputs", names(&offer.inputs)),
+        ("outputs", names(&offer.outputs)),
+        ("calls", calls.clone()),
+        ("devices", devices.clone()),
+    ];
+    let lists = lists.iter().filter(|(title, list)| !list.is_empty() || matches!(*title, "inputs" | "outputs"));
+    let there: Vec<String> = lists.map(|(title, list)| format!("{title}: {}", listed(list))).collect();
+    let there = there.join("; ");
     let help = match nearest(port, known) {
         Some(near) => format!("did you mean `{near}`? {there}"),
         None => there,
@@ -109,6 +150,9 @@ fn no_method(used: &FieldUse, method: &str, offer: &Description) -> Option<Wrong
     let help = match () {
         () if method == "age" => return None,
         () if offer.output(method).is_some() => format!("send with a dot: `{name}.{method}{{ .. }}`"),
+        () if offer.calls.iter().any(|call| call.name == method) => {
+            format!("call it with a dot: `{name}.{method}(..)`")
+        }
         () if offer.input(method).is_some() => format!("read with a dot: `{name}.{method}`"),
         () => format!("there is `{name}:age(\"INPUT\")`; what it offers is written with a dot"),
     };

@@ -1,31 +1,32 @@
 //! A stand-in for any robot: takes everything, says nothing by itself. For tests, where records tell what it was told.
 
-use std::path::Path;
 use std::sync::Arc;
 
+use lrp_bridge::{Item, Scope};
 use serde_json::Value;
 
-use super::{Bridge, Concern, Problems, Stopper};
-use crate::model;
-use crate::model::description::{Description, Scope};
+use super::{Bridge, Stopper};
+use crate::model::{self, Description};
 use crate::runtime::Time;
 use crate::runtime::record::{BridgeState, Health};
+use crate::session::plugins::Plugins;
 
 pub struct Fake {
     bridge: model::Bridge,
+    description: Description,
 }
 
 impl Fake {
-    pub fn new(bridge: &model::Bridge) -> Fake {
-        Fake { bridge: bridge.clone() }
+    pub fn new(bridge: &model::Bridge, plugins: &Plugins) -> Fake {
+        let unknown = || Description { scope: Scope::Open, ..Description::default() };
+        let description = super::description(bridge, plugins).unwrap_or_else(unknown);
+        Fake { bridge: bridge.clone(), description }
     }
 }
 
 impl Bridge for Fake {
     fn description(&self) -> Description {
-        let unknown =
-            || Description { kind: self.bridge.kind.to_string(), scope: Scope::Open, ..Description::default() };
-        super::description(&self.bridge).unwrap_or_else(unknown)
+        self.description.clone()
     }
 
     fn state(&self) -> BridgeState {
@@ -43,17 +44,11 @@ impl Bridge for Fake {
         Vec::new()
     }
 
-    fn send(&mut self, _: &str, _: &Value) {}
+    fn send(&mut self, _: Vec<Item>) {}
 
     fn stop(&mut self) {}
 
     fn stopper(&self) -> Stopper {
         Arc::new(|| {})
     }
-
-    fn file_changed(&mut self, _: &Path) -> Result<Concern, Problems> {
-        Ok(Concern::None)
-    }
-
-    fn put_at_start(&mut self) {}
 }

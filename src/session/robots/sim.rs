@@ -4,12 +4,14 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
 
+use lrp_bridge::value::as_number;
+use lrp_bridge::{Item, Output, Port, Setting};
 use lrp_sim::{Noise, Sim, Twist, World};
 use serde_json::{Value, json};
 
 use super::{Bridge, Concern, Problems, Stopper, problem};
 use crate::model;
-use crate::model::description::{Description, Port, Scope};
+use crate::model::Description;
 use crate::runtime::Time;
 use crate::runtime::record::{BridgeState, Health, WorldText};
 use crate::session::loader;
@@ -17,6 +19,17 @@ use crate::syntax::{Code, Diagnostic, FileId, Source, Span};
 
 /// What the form may configure.
 const KEYS: &[&str] = &["world", "names", "noise", "stale"];
+
+pub fn settings() -> Vec<Setting> {
+    vec![
+        Setting::new("world", "a file with the world, from the program's folder; by default an empty floor")
+            .example("\"worlds/curve.world\""),
+        Setting::new("names", "other names for the inputs and outputs")
+            .example("{ light = \"eye\", move = \"drive\" }"),
+        Setting::new("noise", "standard deviations of what is measured, for light and range").example("{ light = 3 }"),
+        Setting::new("stale", "ms after which an input reads as nil; by default never").example("500"),
+    ]
+}
 const PORTS: &[&str] = &["light", "bumper", "range", "odom", "move"];
 
 pub struct Simulated {
@@ -44,13 +57,8 @@ impl Names {
 }
 
 pub fn description(names: &Names) -> Description {
-    let port = |name: &str, message: Value, doc: &str| Port {
-        name: names.get(name).to_string(),
-        message,
-        doc: doc.to_string(),
-    };
+    let port = |name: &str, message: Value, doc: &str| Port::new(names.get(name), message, doc);
     Description {
-        kind: "sim".to_string(),
         inputs: vec![
             port("light", json!({ "data": 0 }), "brightness of the ground under the sensor, 0 (dark) to 255 (bright)"),
             port("bumper", json!({ "data": 0 }), "1 while the front touches something, else 0"),
@@ -62,8 +70,7 @@ pub fn description(names: &Names) -> Description {
             json!({ "linear": { "x": 0.0, "y": 0.0, "z": 0.0 }, "angular": { "x": 0.0, "y": 0.0, "z": 0.0 } }),
             "linear.x in m/s, angular.z in rad/s; stops 0.5 s after the last one",
         )],
-        calls: Vec::new(),
-        scope: Scope::Closed,
+        ..Description::default()
     }
 }
 
@@ -193,14 +200,13 @@ impl Bridge for Simulated {
         ]
     }
 
-    fn send(&mut self, output: &str, message: &Value) {
-        if output != self.names.get("move") {
-            return;
+    fn send(&mut self, items: Vec<Item>) {
+        for item in items {
+            match item {
+                Item::Output(Output { output, value }) if output == self.names.get("move") => self.drive(&value),
+                Item::Output(_) | Item::Call(_) => {}
+            }
         }
-        let speed = |field: &str| message.pointer(field).and_then(Value::as_f64).unwrap_or(0.0);
-        let twist = Twist { linear: speed("/linear/x"), angular: speed("/angular/z") };
-        // Not a number: a real base would ignore it too, and its dead-man stops it.
-        let _ = self.sim.drive(twist);
     }
 
     fn stop(&mut self) {
@@ -227,6 +233,15 @@ impl Bridge for Simulated {
 
     fn put_at_start(&mut self) {
         self.sim.put_at_start();
+    }
+}
+
+impl Simulated {
+    fn drive(&mut self, message: &Value) {
+        let speed = |field: &str| message.pointer(field).and_then(as_number).unwrap_or(0.0);
+        let twist = Twist { linear: speed("/linear/x"), angular: speed("/angular/z") };
+        // Not a number: a real base would ignore it too, and its dead-man stops it.
+        let _ = self.sim.drive(twist);
     }
 }
 

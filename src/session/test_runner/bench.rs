@@ -4,6 +4,7 @@
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
+use lrp_bridge::Scope;
 use serde_json::Value;
 
 use super::deadline::Deadline;
@@ -15,13 +16,14 @@ use super::why::{self, WayOut};
 use super::written::Written;
 use crate::model::{Description, Edit, Program, Robot};
 use crate::runtime::record::{Breakpoint, Fault, Finding, Held};
-use crate::runtime::{self, Command, Input, Record, Time, What};
+use crate::runtime::{self, Command, Input, Record, Reply, Time, What};
 use crate::session::compile::{Compiler, Rejected};
 use crate::session::driver::Driver;
 use crate::session::files::{Disk, Files};
 use crate::session::findings;
 use crate::session::pace::Pace;
-use crate::session::robots::{self, Robots, Workshop};
+use crate::session::plugins::Plugins;
+use crate::session::robots::{Robots, Workshop};
 use crate::syntax::render::{Style, render};
 use crate::syntax::{Code, Diagnostic, Source};
 
@@ -74,16 +76,18 @@ impl Bench {
             true => PathBuf::from(world),
             false => std::path::absolute(test_folder.join(world)).unwrap_or_else(|_| world.into()),
         });
-        let mut compiler = Compiler::new(Vec::new()).with_files(files.clone());
+        let plugins = Plugins::here(&[]);
+        let compiler_for = |robots| Compiler::new(robots).with_files(files.clone()).with_plugins(plugins.clone());
+        let mut compiler = compiler_for(Vec::new());
         let mut program = compiler.compile(file.clone()).map_err(|rejected| broken(&rejected))?;
         if let Some(chosen) = &options.bridge
             && let robots @ [_, ..] = &*replaced(&program, chosen)
         {
-            compiler = Compiler::new(robots.to_vec()).with_files(files.clone());
+            compiler = compiler_for(robots.to_vec());
             program = compiler.compile(file.clone()).map_err(|rejected| broken(&rejected))?;
         }
-        let robots = if options.bridge.is_some() { Robots::AsProgrammed } else { Robots::Fake };
-        let workshop = Workshop { folder, seed: options.seed, robots };
+        let robots = if options.bridge.is_some() { Robots::Simulated } else { Robots::Fake };
+        let workshop = Workshop { folder, seed: options.seed, robots, plugins };
         let &Options { seed, on_edit, on_error, .. } = options;
         let mut driver =
             Driver::new(runtime::Options { seed, on_edit, on_error, ..runtime::Options::default() }, workshop);
@@ -206,7 +210,12 @@ impl Bench {
         Ok(())
     }
 
-    fn robot<'n>(&self, name: &'n str) -> Result<(Arc<str>, Description, &'n str), Complaint> {
+    /// What a robot seems to say of a call, for the next step.
+    pub(super) fn answer(&mut self, reply: Reply) {
+        self.driver.reply(reply);
+    }
+
+    pub(super) fn robot<'n>(&self, name: &'n str) -> Result<(Arc<str>, Description, &'n str), Complaint> {
         let split = name.split_once('.');
         let (robot, port) = split.ok_or_else(|| Complaint::new(format!("`{name}`: write it as `robot.{name}`")))?;
         let bridges = &self.driver.engine().program().bridges;
@@ -214,23 +223,28 @@ impl Bench {
             let known = bridges.iter().map(|bridge| &*bridge.name);
             return Err(Complaint::new(format!("the program has no robot `{robot}`; {}", hint(robot, known))));
         };
-        let open = || Description { scope: crate::model::description::Scope::Open, ..Description::default() };
-        Ok((form.name.clone(), robots::description(form).unwrap_or_else(open), port))
+        let open = || Description { scope: Scope::Open, ..Description::default() };
+        let description = self.driver.offer(robot).unwrap_or_else(open);
+        Ok((form.name.clone(), description, port))
     }
 
     /// What was sent to an output in the last step, in order. `name`: `robot.move`.
     pub fn outputs(&self, name: &str) -> Result<Vec<&Value>, Complaint> {
         let (robot, offer, output) = self.robot(name)?;
         message::port(&offer, Direction::Output, &robot, output).map_err(Complaint::new)?;
-        let step = self.driver.engine().steps();
-        let last = self.records.iter().rev().take_while(|record| record.step == step);
-        let sent = last.filter_map(|record| match &record.what {
+        let sent = self.last_step().filter_map(|record| match &record.what {
             What::Output { bridge, name, value } if *bridge == robot && &**name == output => Some(value),
             _ => None,
         });
         let mut sent: Vec<&Value> = sent.collect();
         sent.reverse();
         Ok(sent)
+    }
+
+    /// The records of the last step, the last one first.
+    pub(super) fn last_step(&self) -> impl Iterator<Item = &Record> {
+        let step = self.driver.engine().steps();
+        self.records.iter().rev().take_while(move |record| record.step == step)
     }
 
     pub fn records(&self) -> &[Record] {

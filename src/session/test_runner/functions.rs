@@ -7,6 +7,7 @@ use serde_json::json;
 
 use super::api::Api;
 use super::bench::{Bench, Trouble};
+use super::calls::Said;
 use super::failure::Complaint;
 use super::message::hint;
 use super::readable::sent;
@@ -102,9 +103,24 @@ impl Functions<'_> {
         self.add("reset(path)", |_, api, var: String| Ok(api.command(Command::Reset { var })?))?;
         self.breaking("break_at(state, transition or {condition =, machine =})", Breaking::Set)?;
         self.breaking("clear_break(state, transition or {condition =, machine =})", Breaking::Clear)?;
-        self.add("reply(call, value)", |_, _, (call, _): (String, Value)| -> mlua::Result<()> {
-            let why = "no robot has calls yet; they come with later bridges";
-            Err(Complaint::new(format!("`{call}` waits for no reply: {why}")).into())
+        self.replying()
+    }
+
+    fn replying(&self) -> mlua::Result<()> {
+        self.add("reply(call, value)", |_, api, (call, value): (String, Value)| {
+            let value = to_json(&value)?;
+            Ok(api.with(|bench| bench.reply(&call, Said::Done(value)))?)
+        })?;
+        self.add("fail(call, error)", |_, api, (call, error): (String, String)| {
+            Ok(api.with(|bench| bench.reply(&call, Said::Failed(error)))?)
+        })?;
+        self.add("feedback(call, value)", |_, api, (call, value): (String, Value)| {
+            let value = to_json(&value)?;
+            Ok(api.with(|bench| bench.reply(&call, Said::Feedback(value)))?)
+        })?;
+        self.add("calls(name)", |lua, api, name: String| {
+            let calls = api.with(|bench| bench.calls(&name))?;
+            calls.iter().map(|arguments| to_lua(lua, arguments)).collect::<mlua::Result<Vec<Value>>>()
         })
     }
 

@@ -1,8 +1,9 @@
 //! Messages that a test sends in a robot's place, held against what the robot offers.
 
+use lrp_bridge::{Port, Scope};
 use serde_json::{Map, Value};
 
-use crate::model::description::{Description, Port, Scope};
+use crate::model::Description;
 use crate::syntax::nearest::nearest;
 
 /// Which of a robot's ports a name is looked up among.

@@ -34,7 +34,7 @@ impl View {
             What::Set { var, value, by } => self.set(var, value, by),
             What::Input { bridge, name, value } => self.input(bridge, name, value),
             What::Output { bridge, name, value } => self.output(bridge, name, value),
-            What::Call { .. } | What::Reply { .. } => (),
+            What::Call { .. } | What::Cancel { .. } | What::Reply { .. } | What::Offer { .. } | What::Found { .. } => {}
             What::Log(log) => self.log(log),
             What::Error(fault) => self.fault(fault),
             What::Mended(mended) => self.mended(mended),

@@ -6,6 +6,7 @@ use lrp::model::Program;
 use lrp::runtime::{Command, Input, Options, Record, Time, What};
 use lrp::session::compile::{Compiler, Rejected};
 use lrp::session::driver::Driver;
+use lrp::session::plugins::Plugins;
 use lrp::session::robots::{Robots, Workshop};
 use lrp::syntax::{Diagnostic, Source};
 
@@ -47,7 +48,7 @@ pub fn run(example: &Example) -> Result<Run, String> {
         Err(Rejected { diagnostics, .. }) => return Ok(Run { errors: errors(&diagnostics), ..Run::default() }),
     };
     let mut run = Run { errors: errors(&program.findings), remarks: remarks(&program.findings), ..Run::default() };
-    let workshop = Workshop { folder: PathBuf::new(), seed: 1, robots: Robots::Fake };
+    let workshop = Workshop { folder: PathBuf::new(), seed: 1, robots: Robots::Fake, plugins: Plugins::default() };
     let mut driver = Driver::new(Options::default(), workshop);
     let mut see = |record: Record| run.see(&record);
     let refused = |refused: lrp::runtime::Refused| refused.0;

@@ -1,0 +1,113 @@
+//! A bridge that does what a bridge must not do, when it is told to: what lrp makes of that is what tests look at. Writes
+//! each stop into a file, so that a test sees it after everything else has gone.
+
+use std::fs::OpenOptions;
+use std::io::Write;
+use std::path::PathBuf;
+use std::process::{abort, exit};
+use std::thread;
+use std::time::Duration;
+
+use lrp_bridge::{About, Bridge, Description, Form, Level, Port, Problem, Robot, Scope, bridge};
+use serde_json::{Value, json};
+
+struct Unruly {
+    robot: Robot,
+    diary: Option<PathBuf>,
+}
+
+bridge!(Unruly);
+
+impl Bridge for Unruly {
+    fn about() -> About {
+        if std::env::var_os("LRP_UNRULY").is_some_and(|what| what == "silent") {
+            hang();
+        }
+        About {
+            kind: "unruly".into(),
+            version: "0".into(),
+            summary: "misbehaves when told to".into(),
+            ..About::default()
+        }
+    }
+
+    fn offer(_: &Value) -> Result<Description, Vec<Problem>> {
+        let beat = Port::new("beat", json!({ "count": 0 }), "one more, ten times a second");
+        let misdeed = Port::new("misdo", json!({ "what": "" }), "the misdeed");
+        Ok(Description { inputs: vec![beat], outputs: vec![misdeed], scope: Scope::Closed, ..Description::default() })
+    }
+
+    fn connect(robot: Robot, form: Form) -> Unruly {
+        let diary = form.config.get("diary").and_then(Value::as_str).map(|name| form.folder.join(name));
+        let unruly = Unruly { robot, diary };
+        unruly.note("connect");
+        if let Some(first) = form.config.get("first").and_then(Value::as_str) {
+            misbehave(first, &unruly.robot);
+        }
+        let beating = unruly.robot.clone();
+        thread::spawn(move || {
+            for count in 1.. {
+                beating.input("beat", json!({ "count": count }));
+                thread::sleep(Duration::from_millis(100));
+            }
+        });
+        unruly.robot.up();
+        unruly
+    }
+
+    fn configure(&mut self, form: Form) {
+        self.note(&format!("configure {}", form.config["first"]));
+    }
+
+    fn send(&mut self, _: &str, message: Value) {
+        misbehave(message["what"].as_str().unwrap_or_default(), &self.robot);
+    }
+
+    fn stop(&mut self) {
+        self.note("stop");
+    }
+}
+
+impl Unruly {
+    fn note(&self, what: &str) {
+        let Some(diary) = &self.diary else { return };
+        if let Ok(mut file) = OpenOptions::new().append(true).create(true).open(diary) {
+            let _ = writeln!(file, "{what}");
+        }
+    }
+}
+
+fn misbehave(how: &str, robot: &Robot) {
+    match how {
+        "segv" => {
+            // SAFETY: there is none; that is what is asked for.
+            unsafe { std::ptr::null_mut::<u8>().wrapping_add(8).write_volatile(1) }
+        }
+        "abort" => abort(),
+        "panic" => panic!("as asked"),
+        "exit" => exit(3),
+        "hang" => hang(),
+        "print" => println!("a line on standard output"),
+        "complain" => (0..100_000).for_each(|line| eprintln!("complaint {line}")),
+        "lose" => robot.lost("the cable is out"),
+        "log" => (0..100_000).for_each(|line| robot.log(Level::Info, format!("line {line}"))),
+        // About 100 MB in all, as fast as it is taken.
+        "flood" => {
+            let robot = robot.clone();
+            thread::spawn(move || {
+                let text = "x".repeat(100_000);
+                for count in 0..1000 {
+                    robot.input("beat", json!({ "count": count, "text": text }));
+                    robot.input(&format!("other{count}"), text.clone());
+                }
+            });
+        }
+        _ => {}
+    }
+}
+
+fn hang() {
+    loop {
+        thread::park();
+    }
+}
