@@ -3,16 +3,19 @@
 
 mod robot;
 mod sent;
+mod told;
 
 use std::path::Path;
 use std::sync::Arc;
 use std::thread::JoinHandle;
+use std::time::Duration;
 
 use lrp_bridge::{Call, Item, Order, Output, Scope};
 use serde_json::Value;
 
 use self::robot::{Robot, hear, messages};
 use self::sent::{Delivery, Sent, cancel, send};
+use self::told::Told;
 use super::findings::errors_first;
 use super::modules;
 use super::plugins::Said;
@@ -32,6 +35,7 @@ pub struct Driver {
     replies: Vec<Reply>,
     /// What an edit or a forced state sent while paused, or the step that a breakpoint ended: it leaves with the next step.
     held: Vec<Sent>,
+    told: Told,
     /// Robots that are let go.
     parting: Vec<JoinHandle<()>>,
     /// A robot's file was saved with mistakes: it goes by what it read before.
@@ -50,6 +54,7 @@ impl Driver {
             injected: Vec::new(),
             replies: Vec::new(),
             held: Vec::new(),
+            told: Told::default(),
             parting: Vec::new(),
             world_is_broken: false,
         }
@@ -93,6 +98,11 @@ impl Driver {
         self.robots.iter().all(|robot| robot.bridge.as_ref().is_none_or(|bridge| bridge.is_ready()))
     }
 
+    /// The clock of a robot that tells one.
+    pub fn robots_time(&self) -> Option<Duration> {
+        self.bridges().find_map(|bridge| bridge.time())
+    }
+
     /// Connects the robots of a program that is to be loaded once they are there.
     pub fn prepare(&mut self, edit: &Edit, sink: Sink) {
         let mut program = Arc::clone(&edit.program);
@@ -109,6 +119,8 @@ impl Driver {
         for robot in robots {
             let Some(bridge) = &mut robot.bridge else { continue };
             for said in bridge.listen() {
+                // A bridge that was started anew is told all again.
+                robot.uninformed |= matches!(said, Said::State { state: Health::Up, .. });
                 match said {
                     Said::Set { id, variable, value } => sets.push((robot.form.name.clone(), id, variable, value)),
                     said => hear(engine, replies, &robot.form, &**bridge, said),
@@ -286,7 +298,7 @@ impl Driver {
         match self.workshop.make(&form, program.sources.len() as u16) {
             Ok(bridge) => {
                 let state = bridge.state();
-                (Robot { form, bridge: Some(bridge) }, state)
+                (Robot { uninformed: true, form, bridge: Some(bridge) }, state)
             }
             Err(Problems { sources, diagnostics }) => {
                 let message = diagnostics.first().map(|first| first.message.clone());
@@ -295,7 +307,7 @@ impl Driver {
                 program.findings.extend(diagnostics);
                 let (bridge, kind) = (form.name.clone(), form.kind.clone());
                 let state = BridgeState { bridge, kind, state: Health::Lost, message, world: None };
-                (Robot { form, bridge: None }, state)
+                (Robot { uninformed: false, form, bridge: None }, state)
             }
         }
     }
@@ -309,7 +321,7 @@ impl Driver {
     }
 
     fn hand_over(&mut self, delivery: Delivery, sink: Sink) {
-        let Driver { engine, robots, held, .. } = self;
+        let Driver { engine, robots, held, told, .. } = self;
         let mut timing = if engine.has_paused() { Delivery::Held } else { delivery };
         let mut now: Vec<Sent> = Vec::new();
         engine.drain(|record| {
@@ -338,8 +350,10 @@ impl Driver {
                 }
                 _ => {}
             }
+            told.see(&record);
             sink(record);
         });
+        told.tell(engine, robots);
         send(robots, now);
     }
 

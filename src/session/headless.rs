@@ -9,7 +9,7 @@ use super::engine_thread::{End, News};
 use super::live::{Session, Setup};
 use super::signals::{self, Signal, Signals};
 use super::trace::Trace;
-use crate::runtime::record::{Finding, Level, Load};
+use crate::runtime::record::{BridgeState, Finding, Health, Level, Load};
 use crate::runtime::{Record, What};
 
 enum Event {
@@ -137,6 +137,7 @@ impl Outcome {
                 (self.paused, self.errors) = (true, true);
                 say(&format!("paused: {reason}; nobody can let it go on without a screen, so the run ends here"));
             }
+            What::Bridge(state) if state.world.is_none() => say(&robot_words(state)),
             What::Log(log) if log.level >= Level::Info => say(&format!("{}: {}", level(log.level), log.message)),
             _ => {}
         }
@@ -151,6 +152,17 @@ impl Outcome {
         load.findings.iter().filter(|finding| finding.severity == "warning").for_each(tell);
         self.loaded = true;
     }
+}
+
+/// `robot (ev3): lost: the brick doesn't answer`
+fn robot_words(state: &BridgeState) -> String {
+    let health = match state.state {
+        Health::Connecting => "connecting",
+        Health::Up => "up",
+        Health::Lost => "lost",
+    };
+    let message = state.message.as_ref().map_or(String::new(), |message| format!(": {message}"));
+    format!("{} ({}): {health}{message}", state.bridge, state.kind)
 }
 
 fn level(level: Level) -> &'static str {

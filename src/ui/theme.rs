@@ -211,7 +211,7 @@ impl Theme {
     pub fn mode(&self, mode: &Mode) -> Style {
         self.style(match mode {
             Mode::Running => Role::Running,
-            Mode::Paused { .. } => Role::Paused,
+            Mode::Paused { .. } | Mode::Waiting { .. } => Role::Paused,
             Mode::Stopped => Role::Stopped,
         })
     }

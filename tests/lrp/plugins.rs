@@ -1,9 +1,11 @@
 //! Bridges in processes of their own: that they are found, that programs talk with them, and that whatever they do costs
 //! the program nothing. The bridges are the examples of the author crate.
 
+mod documented;
 mod found;
 mod kept;
 mod talk;
+mod told;
 
 use std::path::PathBuf;
 use std::time::{Duration, Instant};

@@ -8,12 +8,14 @@ use std::process::{abort, exit};
 use std::thread;
 use std::time::Duration;
 
-use lrp_bridge::{About, Bridge, Description, Form, Level, Port, Problem, Robot, Scope, bridge};
+use lrp_bridge::{About, Bridge, Description, Form, Level, News, Port, Problem, Robot, Scope, Want, bridge};
 use serde_json::{Value, json};
 
 struct Unruly {
     robot: Robot,
     diary: Option<PathBuf>,
+    /// Whether it writes down what it is told of the program.
+    watches: bool,
 }
 
 bridge!(Unruly);
@@ -27,6 +29,7 @@ impl Bridge for Unruly {
             kind: "unruly".into(),
             version: "0".into(),
             summary: "misbehaves when told to".into(),
+            wants: vec![Want::Variables, Want::States],
             ..About::default()
         }
     }
@@ -39,7 +42,7 @@ impl Bridge for Unruly {
 
     fn connect(robot: Robot, form: Form) -> Unruly {
         let diary = form.config.get("diary").and_then(Value::as_str).map(|name| form.folder.join(name));
-        let unruly = Unruly { robot, diary };
+        let unruly = Unruly { robot, diary, watches: form.config.get("watches").is_some() };
         unruly.note("connect");
         if let Some(first) = form.config.get("first").and_then(Value::as_str) {
             misbehave(first, &unruly.robot);
@@ -66,6 +69,23 @@ impl Bridge for Unruly {
     fn stop(&mut self) {
         self.note("stop");
     }
+
+    fn hear(&mut self, news: News) {
+        if self.watches {
+            self.note(&match news {
+                News::Variables(all) => {
+                    let all: Vec<String> = all.iter().map(|it| format!("{}={}", it.path, it.value)).collect();
+                    format!("variables {}", all.join(" "))
+                }
+                News::States { t, machines } => {
+                    let all: Vec<String> =
+                        machines.iter().map(|it| format!("{}/{}@{}", it.machine, it.state, it.since)).collect();
+                    format!("states {t} {}", all.join(" "))
+                }
+                News::Answer { id, error } => format!("answer {id} {}", error.unwrap_or_default()),
+            });
+        }
+    }
 }
 
 impl Unruly {
@@ -89,6 +109,11 @@ fn misbehave(how: &str, robot: &Robot) {
         "hang" => hang(),
         "print" => println!("a line on standard output"),
         "complain" => (0..100_000).for_each(|line| eprintln!("complaint {line}")),
+        "set" => {
+            robot.set(1, "goal", json!(7));
+            robot.set(2, "gaol", json!(7));
+        }
+        "clock" => robot.time(1000.0),
         "lose" => robot.lost("the cable is out"),
         "log" => (0..100_000).for_each(|line| robot.log(Level::Info, format!("line {line}"))),
         // About 100 MB in all, as fast as it is taken.

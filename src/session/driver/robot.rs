@@ -9,6 +9,8 @@ use crate::session::plugins::Said;
 use crate::session::robots::{Bridge, Fit};
 
 pub struct Robot {
+    /// It has come up, and knows nothing of the program yet.
+    pub uninformed: bool,
     pub form: model::Bridge,
     /// None: it couldn't be made; what is sent to it is lost.
     pub bridge: Option<Box<dyn Bridge>>,

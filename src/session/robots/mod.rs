@@ -8,6 +8,7 @@ mod sim;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::thread::JoinHandle;
+use std::time::Duration;
 
 use lrp_bridge::{About, Item, Order, Want};
 use serde_json::Value;
@@ -54,6 +55,10 @@ pub trait Bridge {
     /// Its form was edited. Whether it goes on under the new one; else it is to be made anew.
     fn configure(&mut self, _form: &model::Bridge) -> Fit {
         Fit::Anew
+    }
+    /// The robot's own clock, where program time is to follow it.
+    fn time(&self) -> Option<Duration> {
+        None
     }
     /// Whether the program may begin.
     fn is_ready(&self) -> bool {

@@ -173,6 +173,11 @@ impl Bridge for Connected {
         Fit::Kept
     }
 
+    fn time(&self) -> Option<Duration> {
+        let ms = self.keeper.line().incoming.robots_time()?;
+        Duration::try_from_secs_f64(ms / 1e3).ok()
+    }
+
     fn is_ready(&self) -> bool {
         self.state == Health::Up
     }

@@ -106,6 +106,7 @@ impl App {
     fn step(&mut self) -> Vec<Effect> {
         match self.view.mode {
             Mode::Running => vec![Effect::Command(Command::Pause)],
+            Mode::Waiting { .. } => vec![Effect::Command(Command::Resume)],
             Mode::Paused { .. } | Mode::Stopped => vec![Effect::Command(Command::Step)],
         }
     }

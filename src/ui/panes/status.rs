@@ -52,6 +52,10 @@ pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) {
     if room > Room::Scarce {
         draw_errors(app, &mut pen);
     }
+    if let Mode::Waiting { robot, why } = mode {
+        pen.put(&format!("for {robot}, {why}"), theme.normal());
+        return;
+    }
     draw_bridges(app, room, &mut pen);
     if let Mode::Paused { reason } = mode
         && paused_for_a_reason(mode)
@@ -116,7 +120,7 @@ fn draw_choices(app: &App, room: Room, pen: &mut Pen) {
 /// How fast it steps, for how long; nothing where there is nothing that could step.
 fn draw_pace(app: &App, mode: &Mode, room: Room, pen: &mut Pen) {
     let (theme, view) = (app.theme(), app.view());
-    if view.broken().is_some() {
+    if view.broken().is_some() || matches!(mode, Mode::Waiting { .. }) {
         return;
     }
     let clock = format::clock(view.t);
@@ -160,6 +164,7 @@ fn badge(app: &App) -> (&'static str, &Mode) {
     }
     match &view.mode {
         _ if app.halted() => ("STOPPED", &Mode::Stopped),
+        mode @ Mode::Waiting { .. } => ("WAITS", mode),
         mode @ Mode::Running => ("RUN", mode),
         mode @ Mode::Paused { .. } => ("PAUSED", mode),
         mode @ Mode::Stopped => ("STOPPED", mode),

@@ -285,12 +285,30 @@ impl View {
         bridge.kind = state.kind.clone();
         bridge.health = Some(state.state);
         bridge.message = state.message.clone();
+        if self.program.is_none() {
+            self.wait_for_robots();
+        }
         if let Some(text) = &state.world {
             let known = self.world.as_ref().is_some_and(|world| world.text == text.text);
             if !known {
                 self.world = Some(World::new(&state.bridge, text));
             }
         }
+    }
+}
+
+impl View {
+    /// The program begins when all robots are there.
+    fn wait_for_robots(&mut self) {
+        let missing = self.bridges.iter().find(|(_, bridge)| bridge.health != Some(Health::Up));
+        self.mode = match missing {
+            None => Mode::Running,
+            Some((robot, bridge)) => {
+                let state = if bridge.health == Some(Health::Lost) { "lost" } else { "connecting" };
+                let why = bridge.message.as_ref().map_or(state.to_string(), |message| format!("{state}: {message}"));
+                Mode::Waiting { robot: robot.clone(), why }
+            }
+        };
     }
 }
 

@@ -1,9 +1,15 @@
 //! Whether the program runs, and what edits and errors do to it.
 
+use super::Path;
 use crate::runtime::command::{OnEdit, OnError, Saves};
 
 #[derive(Clone, Debug, PartialEq)]
 pub enum Mode {
+    /// Before the program begins: a robot isn't there yet, and perhaps why.
+    Waiting {
+        robot: Path,
+        why: String,
+    },
     Running,
     Paused {
         reason: String,

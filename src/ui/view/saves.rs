@@ -14,6 +14,9 @@ impl View {
     pub(super) fn load(&mut self, load: &Load) {
         let edit = if self.loads == 0 { Edit::Loaded } else { Edit::of_load(load, self.edit.as_ref()) };
         self.loads += 1;
+        if matches!(self.mode, super::Mode::Waiting { .. }) {
+            self.mode = super::Mode::Running;
+        }
         self.held = None;
         self.guards.clear();
         self.rename(&Renames::of(&load.changes));
