@@ -1,5 +1,6 @@
 //! The arguments of each command, with their help.
 
+use std::ffi::OsString;
 use std::path::PathBuf;
 use std::time::Duration;
 
@@ -15,12 +16,13 @@ use crate::session::pace::Rate;
 use crate::session::plugins::Plugins;
 use crate::session::trace::Clock;
 use crate::ui::pointer::Mouse;
+use crate::ui::tour::folder;
 
 /// Live Robot Programming: state machines that change while they run.
 ///
-/// `lrp FILE` opens the screen; every save of FILE changes the running program.
+/// `lrp FILE` opens the screen; every save of FILE changes the running program. `lrp` alone offers what there is.
 #[derive(Parser)]
-#[command(name = "lrp", version, args_conflicts_with_subcommands = true, arg_required_else_help = true)]
+#[command(name = "lrp", version, args_conflicts_with_subcommands = true)]
 pub struct Args {
     #[command(subcommand)]
     task: Option<Task>,
@@ -70,6 +72,12 @@ pub enum Task {
     New {
         /// Of the file, which must not exist yet; .lrp is added
         name: String,
+    },
+    /// Ten minutes in the simulator, in which each live thing is done once
+    Tour {
+        /// Where its program is kept, and how far you came
+        #[arg(default_value = folder::USUAL)]
+        folder: PathBuf,
     },
     /// List the kinds of bridges, or what one offers
     Bridges {
@@ -185,6 +193,15 @@ pub enum GraphFormat {
 }
 
 impl LiveArgs {
+    /// As if nothing else had been said on the command line.
+    pub fn of(file: PathBuf) -> LiveArgs {
+        let words = [OsString::from("lrp"), "--".into(), file.into()];
+        match Args::parse_from(words).task() {
+            Task::Live(live) => live,
+            _ => unreachable!("a file after -- is a file"),
+        }
+    }
+
     pub fn setup(&self) -> Setup {
         let setup = self.run.setup();
         let saves = if self.screen.hold { Saves::Hold } else { Saves::Apply };

@@ -7,6 +7,8 @@ mod explain;
 mod graph;
 mod new;
 mod output;
+mod tour;
+mod welcome;
 
 use std::process::ExitCode;
 
@@ -15,20 +17,25 @@ use clap::{CommandFactory, Parser};
 
 use crate::session::plugins::Plugins;
 use crate::syntax::nearest::nearest;
+use crate::ui::live;
 use args::{Args, Task};
 
 pub fn main() -> ExitCode {
+    if std::env::args_os().len() == 1 {
+        return welcome::welcome();
+    }
     let args = match Args::try_parse() {
         Ok(args) => args,
         Err(error) => return wrong(&error),
     };
     match args.task() {
-        Task::Live(live) => crate::ui::live::run(live.setup(), live.run.trace.clone(), live.mouse()),
+        Task::Live(live) => live::run(live.setup(), live.run.trace.clone(), live.mouse(), None),
         Task::Run(run) => crate::session::headless::run(run.setup(), run.trace),
         Task::Check { explain: Some(code), .. } => explain::explain(&code),
         Task::Check { files, format, bridge_path, .. } => check::check(&files, format, &Plugins::here(&bridge_path)),
         Task::Graph(graph) => graph::print(&graph),
         Task::New { name } => new::create(&name),
+        Task::Tour { folder } => tour::take(folder),
         Task::Test { paths } => crate::session::test_runner::run(&paths),
         Task::Bridges { kind, bridge_path } => bridges::list(kind.as_deref(), &Plugins::here(&bridge_path)),
         Task::BridgeHost { library } => crate::session::plugins::host(&library),

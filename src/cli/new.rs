@@ -1,32 +1,23 @@
-//! `lrp new NAME`: a first program that runs in the simulator, made to be edited.
+//! `lrp new NAME`: says what was made, and what to do with it.
 
-use std::fs::OpenOptions;
-use std::io::{ErrorKind, Write};
 use std::process::ExitCode;
 
 use super::output::{fail, finish};
-
-const TEMPLATE: &str = include_str!("new.lrp");
+use crate::session::first_program;
 
 pub fn create(name: &str) -> ExitCode {
-    let file = if name.ends_with(".lrp") { name.to_string() } else { format!("{name}.lrp") };
-    let created = OpenOptions::new()
-        .write(true)
-        .create_new(true)
-        .open(&file)
-        .and_then(|mut out| out.write_all(TEMPLATE.as_bytes()));
-    match created {
-        Ok(()) => {
+    match first_program::create(name) {
+        Ok(file) => {
+            let file = file.display().to_string();
+            let run = quoted(&file);
             let text = format!(
-                "{file} is made. Run it with `lrp {}` and edit it in another window: every save counts at once.\n",
-                quoted(&file)
+                "{file} is made: a robot in the simulator that turns away from walls.\n\n\
+                 \x20   lrp {run}\n\n\
+                 runs it. Edit it in another window, or press o: every save counts at once. `lrp tour` shows what else there is.\n"
             );
             finish(&text, ExitCode::SUCCESS)
         }
-        Err(error) if error.kind() == ErrorKind::AlreadyExists => {
-            fail(format_args!("{file} exists already; choose another name"))
-        }
-        Err(error) => fail(format_args!("{file} can't be made: {error}")),
+        Err(why) => fail(why),
     }
 }
 

@@ -1,11 +1,13 @@
 //! The engine among threads, files and robots: paces it, feeds it with saves and commands, writes its records down.
 
+pub mod behaviours;
 pub mod compile;
 pub mod driver;
 pub mod edits;
 pub mod engine_thread;
 pub mod files;
 pub mod findings;
+pub mod first_program;
 pub mod gather;
 pub mod headless;
 pub mod live;

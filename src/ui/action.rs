@@ -68,6 +68,8 @@ pub enum Action {
     OnlyMachine,
     Back,
     Help,
+    TourNext,
+    TourStrip,
     Quit,
     Suspend,
     Redraw,
@@ -207,6 +209,8 @@ table! {
     Action::Back, "back", ["Esc"], "", "leave: typing, help, full screen, detail", Looking, Reach::Screen;
 
     Action::Help, "help", ["?"], "help", "this help", Lrp, Reach::Screen;
+    Action::TourNext, "tour-next", ["n"], "", "the tour: skip this task; at its end, take up what was skipped", Lrp, Reach::Screen;
+    Action::TourStrip, "tour-strip", ["N"], "", "the tour: its strip away, and back", Lrp, Reach::Screen;
     Action::Quit, "quit", ["q"], "", "stop the robot and quit", Lrp, Reach::Screen;
     Action::Quit, "quit-always", ["Ctrl-C"], "", "stop the robot and quit, also while typing", Lrp, Reach::Always;
     Action::Suspend, "suspend", ["Ctrl-Z"], "", "stop the robot and go to the shell", Lrp, Reach::Always;

@@ -6,6 +6,7 @@ mod arranging;
 mod breaking;
 mod draw;
 mod follow;
+mod guide;
 mod menu;
 mod moment;
 mod mouse;
@@ -27,6 +28,7 @@ use std::sync::Arc;
 use crossterm::event::{KeyEvent, KeyEventKind};
 use ratatui::layout::Size;
 
+pub use movement::Move;
 pub use reading::{Filter, LogRow, Reading, Shown};
 pub use scroll::top_for;
 pub use source::{TextLine, Written};
@@ -38,6 +40,7 @@ use self::moment::Moment;
 use self::scroll::Scroll;
 use self::source::Cursor;
 use super::action::Action;
+use super::hints::Hints;
 use super::ink::Inked;
 use super::key::Key;
 use super::layout::{Chosen, Divide, Extent, Figure, Pane};
@@ -46,6 +49,7 @@ use super::panes::diagram::Diagram;
 use super::pointer::{Mouse, Pointer};
 use super::scope::Arrangement;
 use super::settings::Settings;
+use super::tour::Tour;
 use super::tree;
 use super::view::{Choices, Path, ProblemKey, Renames, View};
 use crate::model::{MachineId, Program};
@@ -141,6 +145,8 @@ pub struct App {
     tree_scroll: Scroll,
     values_scroll: Scroll,
     detail_scroll: Scroll,
+    tour: Option<Tour>,
+    hints: Hints,
     dirty: bool,
     diagram: RefCell<Option<(DiagramKey, Rc<Diagram>)>>,
     inked: RefCell<Option<(Arc<str>, Rc<Inked>)>>,
@@ -210,6 +216,8 @@ impl App {
             tree_scroll: Scroll::default(),
             values_scroll: Scroll::default(),
             detail_scroll: Scroll::default(),
+            tour: None,
+            hints: Hints::default(),
             dirty: true,
             diagram: RefCell::new(None),
             inked: RefCell::new(None),
@@ -235,13 +243,16 @@ impl App {
             What::Error(fault) => self.fault = Some((record.step, ProblemKey::of(fault))),
             What::Pause { reason, at } => self.paused(record.step, reason, at.as_ref()),
             What::Resume => self.halted = false,
-            What::Status { .. } => self.moment = self.moment.and_then(Moment::later),
+            What::Status { .. } => self.half_a_second(),
             What::Log(log) if is_refusal(log) => {
                 self.message = Some(log.message.clone());
                 self.nudged = None;
                 self.type_again();
             }
             _ => (),
+        }
+        if let Some(tour) = &mut self.tour {
+            tour.record(record, &self.view);
         }
         self.dirty = true;
     }
@@ -257,6 +268,7 @@ impl App {
             }
         };
         self.settle();
+        self.reconsider_hint();
         self.dirty = true;
         effects
     }

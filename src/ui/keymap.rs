@@ -47,6 +47,12 @@ impl Keymap {
         keys.next().map_or_else(|| "(no key)".into(), Key::to_string)
     }
 
+    /// The key of the row of this name.
+    pub fn named(&self, id: &str) -> String {
+        let row = self.rows().find(|(entry, _)| entry.id == id);
+        row.and_then(|(_, keys)| keys.first()).map_or_else(|| "(no key)".into(), Key::to_string)
+    }
+
     /// The key that does it also while a value is typed.
     pub fn name_always(&self, action: Action) -> String {
         let mut rows = self.rows().filter(|(entry, _)| entry.action == action && entry.reach == Reach::Always);

@@ -19,6 +19,7 @@ use super::pointer::{Hand, Mouse};
 use super::settings::{Settings, Surroundings};
 use super::terminal::Screen;
 use super::theme::Theme;
+use super::tour::{Tour, folder};
 use super::view::Choices;
 use crate::runtime::{Command, Explain, Record};
 use crate::session::engine_thread::{End, News};
@@ -39,9 +40,15 @@ enum Happened {
     Written(Vec<(WriteBack, Result<(), NotWritten>)>),
 }
 
+/// A tour, and the folder that keeps how far it was taken.
+pub struct Guide {
+    pub tour: Tour,
+    pub folder: PathBuf,
+}
+
 /// Exit code 0: quit, terminated or hung up; 1: it couldn't begin or failed; 130: interrupted.
-pub fn run(setup: Setup, trace: Option<PathBuf>, mouse: Mouse) -> ExitCode {
-    match live(setup, trace, mouse) {
+pub fn run(setup: Setup, trace: Option<PathBuf>, mouse: Mouse, guide: Option<Guide>) -> ExitCode {
+    match live(setup, trace, mouse, guide) {
         Ok(code) => code,
         Err(why) => {
             let _ = writeln!(io::stderr(), "lrp: {why}");
@@ -50,7 +57,7 @@ pub fn run(setup: Setup, trace: Option<PathBuf>, mouse: Mouse) -> ExitCode {
     }
 }
 
-fn live(setup: Setup, trace: Option<PathBuf>, mouse: Mouse) -> Result<ExitCode, String> {
+fn live(setup: Setup, trace: Option<PathBuf>, mouse: Mouse, guide: Option<Guide>) -> Result<ExitCode, String> {
     Screen::check().map_err(|error| error.to_string())?;
     if trace.as_deref() == Some(Path::new("-")) {
         return Err(
@@ -77,7 +84,11 @@ fn live(setup: Setup, trace: Option<PathBuf>, mouse: Mouse) -> Result<ExitCode, 
     let signals = send(&happened, Happened::Signal);
     let _signals = Signals::watch(signals).map_err(|error| error.to_string())?;
     let size = crossterm::terminal::size().map(|(width, height)| Size { width, height }).unwrap_or_default();
-    let app = app(size);
+    let (tour, tour_folder) = guide.map(|guide| (guide.tour, guide.folder)).unzip();
+    let app = match tour {
+        Some(tour) => app(size).guided(tour),
+        None => app(size),
+    };
     let session = Session::start(setup, send(&happened, Happened::News)).map_err(|why| why.to_string())?;
     let stop = session.commands().clone();
     let screen = Screen::enter(mouse, move || stop.halt()).map_err(|error| error.to_string())?;
@@ -116,21 +127,27 @@ fn live(setup: Setup, trace: Option<PathBuf>, mouse: Mouse) -> Result<ExitCode, 
         // Whoever hung up doesn't read it.
         let _ = writeln!(io::stderr(), "{line}");
     }
+    if let Some((tour, kept)) = app.tour().zip(tour_folder)
+        && let Err(error) = folder::keep(&kept, tour)
+    {
+        let _ = writeln!(io::stderr(), "lrp: how far you came can't be kept in {}: {error}", kept.display());
+    }
     match failed {
         Some(why) => Err(why),
         None => Ok(code),
     }
 }
 
-fn settings(surroundings: &Surroundings) -> Settings {
+/// As a person wants them here.
+pub fn settings(surroundings: &Surroundings) -> Settings {
     let (theme, charset) = (Theme::of(surroundings.palette()), surroundings.charset());
     Settings { theme, charset, ..Settings::default() }
 }
 
 /// Hands things of one kind on to the loop; when that has ended there is nobody to tell.
-fn send<T: 'static>(
-    happened: &Sender<Happened>,
-    kind: impl Fn(T) -> Happened + Clone + Send + 'static,
+pub fn send<T: 'static, H: Send + 'static>(
+    happened: &Sender<H>,
+    kind: impl Fn(T) -> H + Clone + Send + 'static,
 ) -> impl Fn(T) + Clone + Send + 'static {
     let happened = happened.clone();
     move |thing| drop(happened.send(kind(thing)))

@@ -27,7 +27,7 @@ fn help_is_what_was_asked_for() {
         fs::write(&kept, &said.out).unwrap();
     }
     assert!(fs::read_to_string(&kept).unwrap_or_default() == said.out, "not as in {}:\n{}", kept.display(), said.out);
-    for name in ["live", "run", "check", "test", "graph", "new", "bridges"] {
+    for name in ["live", "run", "check", "test", "graph", "new", "tour", "bridges"] {
         let said = lrp(root(), &[name, "--help"]);
         ok(&said);
         let undescribed =
@@ -65,6 +65,10 @@ fn without_a_terminal_there_is_no_screen() {
     let said = lrp(root(), &["behaviors/line_follower.lrp"]);
     assert_eq!((said.code, &*said.out), (Some(1), ""));
     assert_eq!(said.err, "lrp: there is no terminal for the screen; `lrp run` works without one\n");
+    let folder = tempfile::tempdir().unwrap();
+    let said = lrp(folder.path(), &["tour"]);
+    assert_eq!((said.code, &*said.out), (Some(1), ""));
+    assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 0, "nothing was made for nobody");
 }
 
 fn trace(args: &[&str]) -> String {
@@ -264,9 +268,20 @@ fn a_new_program_checks_clean_and_runs() {
     ok(&said);
     assert!(said.out.contains(r#""to":"turning""#), "it meets a wall");
     let said = lrp(folder.path(), &["new", "rover.lrp"]);
-    assert_eq!((said.code, &*said.err), (Some(1), "lrp: rover.lrp exists already; choose another name\n"));
+    assert_eq!(
+        (said.code, &*said.err),
+        (Some(1), "lrp: rover.lrp exists already and stays as it is; choose another name, or run it: lrp rover.lrp\n")
+    );
     assert_eq!(made, fs::read_to_string(folder.path().join("rover.lrp")).unwrap());
-    assert_eq!(lrp(folder.path(), &["new", "no/such/rover"]).code, Some(1));
+    let said = lrp(folder.path(), &["new", "no/such/rover"]);
+    assert_eq!(
+        (said.code, &*said.err),
+        (Some(1), "lrp: no/such/rover.lrp can't be made: there is no folder no/such\n")
+    );
+    for nameless in ["", ".lrp", "/tmp/"] {
+        let said = lrp(folder.path(), &["new", nameless]);
+        assert_eq!((said.code, &*said.err), (Some(1), "lrp: a new behaviour needs a name, such as rover\n"));
+    }
 }
 
 #[test]

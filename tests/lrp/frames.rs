@@ -48,7 +48,7 @@ pub fn frame(app: &App) -> String {
 }
 
 /// The glyphs, then one letter a cell where a style tells something.
-fn text(buffer: &Buffer) -> String {
+pub fn text(buffer: &Buffer) -> String {
     let rows = buffer.content.chunks(usize::from(buffer.area.width));
     let glyphs = rows.clone().map(|row| line(row.iter().map(|cell| cell.symbol().to_owned())));
     let styles = rows.map(|row| line(row.iter().map(|cell| letter(cell).to_string())));
@@ -84,8 +84,11 @@ fn letter(cell: &Cell) -> char {
 }
 
 pub fn check(name: &str, app: &App) {
+    check_frame(name, frame(app));
+}
+
+pub fn check_frame(name: &str, seen: String) {
     let path = PathBuf::from(env!("CARGO_MANIFEST_DIR")).join("tests/frames").join(format!("{name}.txt"));
-    let seen = frame(app);
     if std::env::var_os("UPDATE").is_some() {
         return fs::write(path, seen).expect("the frame is written");
     }

@@ -9,7 +9,7 @@ use crate::ui::action::Action;
 use crate::ui::format;
 use crate::ui::glyphs;
 use crate::ui::layout::{Layout, Pane};
-use crate::ui::panes::{self, breakpoints, footer, held, help, menu, news, status};
+use crate::ui::panes::{self, breakpoints, footer, held, help, menu, news, status, strip};
 use crate::ui::pen::Pen;
 
 impl App {
@@ -27,7 +27,11 @@ impl App {
         cursor
     }
 
-    fn paint_whole(&self, area: Rect, buffer: &mut Buffer) -> Option<Position> {
+    fn paint_whole(&self, whole: Rect, buffer: &mut Buffer) -> Option<Position> {
+        let (above, area) = strip::divide(self, whole);
+        if let Some(tour) = self.tour() {
+            strip::draw(self, tour, (above, whole), buffer);
+        }
         let Some(layout) = self.layout(area) else {
             self.paint_too_small(area, buffer);
             return None;

@@ -1,7 +1,5 @@
 //! Moving the selection of the focused pane, and keeping it in sight.
 
-use ratatui::layout::{Rect, Size};
-
 use super::{App, Overlay};
 use crate::ui::action::Action;
 use crate::ui::layout::{Extent, Figure, Layout, Pane, Wish};
@@ -106,7 +104,7 @@ impl App {
 
     /// Lines without a selection only scroll.
     pub(super) fn scroll_overlay(&mut self, how: Move, length: usize) {
-        let page = usize::from(self.options.size.height.saturating_sub(3));
+        let page = usize::from(self.area().height.saturating_sub(3));
         if let Overlay::Help { top } | Overlay::Held { top } = &mut self.overlay {
             *top = how.from(Some(*top), length, page).unwrap_or(0).min(length.saturating_sub(page));
         }
@@ -240,11 +238,6 @@ impl App {
     pub(super) fn columns(&self, pane: Pane) -> u16 {
         let area = self.layout(self.area()).and_then(|layout| layout.area(pane));
         area.map_or(0, |area| area.width)
-    }
-
-    pub(super) fn area(&self) -> Rect {
-        let Size { width, height } = self.options.size;
-        Rect::new(0, 0, width, height)
     }
 
     /// After anything that may have moved a selection: brings it into sight.

@@ -17,6 +17,7 @@ const RATES: [f64; 13] = [0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0,
 
 impl App {
     pub(super) fn perform(&mut self, action: Action) -> Vec<Effect> {
+        self.noticed(action);
         match action {
             Action::Runstop => return command(Command::Runstop),
             Action::Pause => return command(self.pause_or_run()),
@@ -55,6 +56,8 @@ impl App {
             Action::Wider => return self.resize(Resize::Wider),
             Action::Shorter => return self.resize(Resize::Shorter),
             Action::Taller => return self.resize(Resize::Taller),
+            Action::TourNext => return self.next_task(),
+            Action::TourStrip => return self.toggle_strip(),
             Action::Quit => return vec![Effect::Quit],
             Action::Suspend => return vec![Effect::Suspend],
             Action::Redraw => return vec![Effect::Redraw],

@@ -82,6 +82,7 @@ impl App {
                     let named = named.collect::<Vec<_>>().join(", ");
                     told.push(format!("written to {}: {named}", format::file_name(&rewrite.file)));
                     self.written.extend(values);
+                    self.tour.iter_mut().for_each(|tour| tour.written(&self.view));
                 }
                 Err(why) => told.insert(0, why.to_string()),
             }

@@ -7,6 +7,7 @@ use ratatui::layout::{Position, Rect};
 use ratatui::style::Style;
 use unicode_width::UnicodeWidthChar;
 
+use super::draw_words;
 use crate::ui::action::{Action, Entry};
 use crate::ui::app::{App, Goal, Overlay, Text, Typing};
 use crate::ui::format;
@@ -14,6 +15,7 @@ use crate::ui::glyphs;
 use crate::ui::key::Key;
 use crate::ui::pen::Pen;
 use crate::ui::view::{Mode, name};
+use crate::ui::words;
 
 /// What a person can take hold of in it.
 #[derive(Debug, Default)]
@@ -126,8 +128,20 @@ fn draw_keys(app: &App, pen: &mut Pen, footer: &mut Footer) {
     pen.put_right(" help", theme.dim()).put_right(&app.keys().name(Action::Help), theme.key());
     footer.actions.push((pen.end()..end, Action::Help));
     pen.put_right("  ", theme.normal());
+    let mut told = Vec::new();
+    if let Some(hint) = app.hint() {
+        let words = hint.words(app);
+        if words.iter().map(|word| words::width(word) + 1).sum::<u16>() <= pen.room() {
+            draw_words(app, &words, pen);
+            pen.put("  ", theme.normal());
+            told = words.concat();
+        }
+    }
     let offered = app.keys().offered(app.focus());
     for (entry, key) in offered.into_iter().filter(|(entry, _)| app.offers(entry.action)) {
+        if told.contains(&(words::Tone::Key, key.to_string())) {
+            continue;
+        }
         let (key, label) = (short(key), label(app, entry));
         if pen.room() < format::width(&key) + 1 + format::width(label) {
             return;

@@ -14,6 +14,7 @@ pub mod news;
 pub mod sheet;
 pub mod source;
 pub mod status;
+pub mod strip;
 pub mod variables;
 pub mod world;
 
@@ -25,6 +26,7 @@ use super::glyphs;
 use super::layout::Pane;
 use super::pen::Pen;
 use super::view::Path;
+use super::words::{Tone, Word};
 use crate::model::TransitionId;
 
 /// The words in a pane's first row, and what is noted at their right.
@@ -101,6 +103,22 @@ fn draw_title(app: &App, pane: Pane, title: &Title, mut pen: Pen) {
         pen.put_right(" ", style).put_right(&title.note, style).put_right(" ", style);
     }
     pen.put(&title.text, style).put(" ", style).fill(glyphs::RULE, theme.rule());
+}
+
+/// Words of a line, keys and code told apart.
+fn draw_words(app: &App, words: &[Word], pen: &mut Pen) {
+    let theme = app.theme();
+    let style = |tone| match tone {
+        Tone::Text => theme.normal(),
+        Tone::Key => theme.key(),
+        Tone::Code => theme.fresh(),
+    };
+    for (i, word) in words.iter().enumerate() {
+        pen.put(if i > 0 { " " } else { "" }, theme.normal());
+        for (tone, text) in word {
+            pen.put(text, style(*tone));
+        }
+    }
 }
 
 /// A sentence where there is nothing else to show.

@@ -1,0 +1,2 @@
+((lua) @injection.content
+  (#set! injection.language "lua"))

@@ -1,0 +1,2 @@
+" Programs of lrp.
+autocmd BufNewFile,BufRead *.lrp setlocal filetype=lrp
