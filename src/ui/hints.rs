@@ -87,7 +87,7 @@ impl Hint {
     pub fn words(self, app: &App) -> Vec<Word> {
         let text = match self {
             Hint::Error => "{log} {open-editor-at-log} opens your editor at the error",
-            Hint::Restarted => "{on-edit}: such edits begin nothing again from then on",
+            Hint::Restarted => "{on-edit}: such edits keep what runs from then on",
             Hint::Paused => "{step} makes one step, {pause} runs on",
             Hint::Unwritten if app.focus() == Pane::Variables && app.offers(Action::WriteBack) => {
                 "{write-back} writes your value into the file"

@@ -247,7 +247,7 @@ fn edits_are_seen() {
     assert!(user.trace().len() > before);
     fs::write(&file, text.replacen("(machine follower", "(machine follower (", 1)).unwrap();
     user.traced("a broken edit", |record| record["kind"] == "reject" && record["findings"][0]["line"].is_u64());
-    user.sees(&["RUN", "line_follower.lrp"]);
+    user.sees(&["RUN", "is not closed"]);
     fs::write(&file, text).unwrap();
     user.traced("a mended one", |record| {
         record["kind"] == "set" && record["var"] == "lightlim" && record["value"] == 128

@@ -201,6 +201,9 @@ fn its_strip_leaves_the_rest_where_it_is() {
         }
         check(&format!("tour_{width}x{height}"), &guided(width, height, &until("write"), &Story::searching()));
     }
+    // In half of a terminal of 24 rows, beside the editor, there is room for two lines and three panes.
+    let half = frame(&guided(80, 11, "", &Story::searching()));
+    assert!(half.lines().nth(2).is_some_and(|line| line.contains("RUN")) && half.contains("─ log"), "{half}");
     let mut app = guided(80, 24, &until("jump"), &Story::searching());
     do_it(&mut app, "jump");
     check("tour_praise_80x24", &app);

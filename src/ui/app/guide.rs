@@ -74,7 +74,11 @@ impl App {
         self.hints.key(&fits);
     }
 
+    /// None beside the keys for an edit that waits, or for values that one took.
     fn fitting_hints(&self) -> Vec<Hint> {
+        if self.offers(Action::ApplyHeld) || self.offers(Action::GiveBack) {
+            return Vec::new();
+        }
         Hint::ALL.into_iter().filter(|hint| hint.fits(self)).collect()
     }
 }

@@ -175,8 +175,8 @@ pub const STEPS: &[Step] = &[
     Step {
         id: "hold",
         title: "hold a save",
-        task: "Near people you may want to look before an edit counts. {saves} holds saves: press it, change `spin` in the \
-               text, and save.",
+        task: "Near people, look before an edit counts: {saves} holds saves. Then load the text anew, since it has your \
+               number, change `spin`, and save.",
         until: Until::Held,
         needs: &[Need::Sound],
         praise: "Nothing changed yet.",
