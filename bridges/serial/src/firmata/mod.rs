@@ -101,6 +101,8 @@ impl Board {
                 self.channels = Some(channels);
                 self.perhaps_run(heard);
             }
+            // From pins that were set up by somebody else.
+            Message::Digital { .. } | Message::Analog { .. } if self.phase != Phase::Running => {}
             Message::Digital { port, pins } => self.digital(port, pins, heard),
             Message::Analog { channel, value } => self.analog(channel, value, heard),
             Message::Text(text) => heard.push(Heard::Log(Level::Info, text)),

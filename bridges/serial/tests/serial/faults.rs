@@ -145,11 +145,3 @@ fn a_stop_overtakes_what_is_stuck() {
     let lines: Vec<String> = std::iter::repeat_with(|| robot.line()).take(100).take_while(|line| line != "S").collect();
     assert!(lines.len() < 60, "a stop is not behind {} lines", lines.len());
 }
-
-#[test]
-fn a_robot_that_never_says_it_is_ready_is_lost() {
-    let socket = Socket::new();
-    let _robot = socket.plug();
-    let mut lrp = bridge(config(&socket.path(), json!({ "ready": "ready" })));
-    assert_eq!(lrp.until_lost(), "the robot hasn't said `ready` in 10 s: is `ready` or `baud` wrong?");
-}

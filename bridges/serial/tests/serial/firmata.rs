@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use lrp_bridge::{Event, Order, Peer};
+use lrp_bridge::{Order, Peer};
 use lrp_bridge_serial::firmata::{Decoder, From, Message};
 use serde_json::{Value, json};
 
@@ -153,17 +153,6 @@ fn reports_that_nobody_asked_for() {
 }
 
 #[test]
-fn a_board_that_does_not_tell_its_pins() {
-    let socket = Socket::new();
-    let mut board = Board::new(&socket);
-    let mut lrp = bridge(form(&socket, json!({ "light": "analog A1" })));
-    board.until(&Message::AskFirmware);
-    board.say(&[version()]);
-    lrp.until_up();
-    board.until(&mode(15, 2));
-}
-
-#[test]
 fn an_edit_touches_only_the_pins_that_it_changes() {
     let (mut lrp, mut board, socket) = up(json!({ "left": "pwm 5", "led": "output 13" }));
     board.until(&Message::Analog { channel: 5, value: 0 });
@@ -185,21 +174,4 @@ fn digital_pins_do_not_grow_stale() {
         board.say(&[version()]);
         assert_eq!(lrp.input("bumper"), json!({ "data": 1 }));
     }
-}
-
-#[test]
-fn a_board_that_falls_silent_is_lost() {
-    let (mut lrp, _board, _socket) = up(json!({ "bumper": "input 7" }));
-    assert_eq!(lrp.until_lost(), "the board has said nothing for 3 s");
-}
-
-#[test]
-fn a_port_without_firmata_is_told() {
-    let socket = Socket::new();
-    let mut board = Board::new(&socket);
-    let mut lrp = bridge(form(&socket, json!({})));
-    board.robot.say("light=230\n");
-    assert_eq!(lrp.until_lost(), "no Firmata answers within 8 s: is it on the board, and `baud` right?");
-    lrp.order(Order::Ping { id: 1 });
-    lrp.until("pong", |event| (*event == Event::Pong { id: 1 }).then_some(()));
 }

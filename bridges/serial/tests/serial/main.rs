@@ -9,3 +9,4 @@ mod firmata;
 mod lines;
 mod peers;
 mod terminal;
+mod waits;
