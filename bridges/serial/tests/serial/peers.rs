@@ -78,6 +78,25 @@ fn a_board_that_speaks_in_lines() {
     assert!(halted, "the board was left moving");
 }
 
+#[test]
+fn the_sketch_of_the_manual() {
+    let Some(bench) = Bench::with_sketch() else { return };
+    let board = bench.plug();
+    let rest = json!({
+        "ready": "ready", "stop": "S", "inputs": { "light": 0, "bumper": 0 },
+        "outputs": { "move": "M {linear.x:.2} {angular.z:.2}" },
+    });
+    let mut lrp = bridge(config(board.path(), rest));
+    board.press_reset();
+    lrp.until_up();
+    // 3 of 5 V.
+    lrp.input_where("light", |light| (610..=618).contains(&data(light)));
+    lrp.send("move", json!({ "linear": { "x": 0.5 }, "angular": { "z": 0 } }));
+    lrp.input_where("bumper", |bumper| data(bumper) == 0);
+    board.press_bumper();
+    lrp.input_where("bumper", |bumper| data(bumper) == 1);
+}
+
 fn firmata(port: &std::path::Path) -> Value {
     json!({
         "port": port, "codec": "firmata", "sampling": 20,
