@@ -94,8 +94,8 @@ impl Shared {
 
     pub fn send(&self, output: &str, message: &Value) {
         let mut state = self.state();
+        // lrp knows that it isn't, and counts.
         if !state.is_up {
-            state.dropped += 1;
             return;
         }
         match state.codec.send(output, message) {
