@@ -16,6 +16,10 @@ const GONE: Duration = Duration::from_secs(20);
 
 const ANSWER: &[u8] = b" ";
 
+/// More bricks than any room has, and datagrams than they could send between two looks: whoever floods the port doesn't hold
+/// up the robot.
+const MANY: usize = 64;
+
 /// What a brick says of itself.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Brick {
@@ -27,6 +31,8 @@ pub struct Brick {
 pub struct Discovery {
     socket: UdpSocket,
     heard: Vec<Heard>,
+    /// The one that was answered: it may say nothing more while it is connected.
+    answered: Option<String>,
     changed: bool,
 }
 
@@ -39,11 +45,12 @@ struct Heard {
 impl Discovery {
     pub fn open(port: u16) -> io::Result<Discovery> {
         let socket = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, port))?;
-        Ok(Discovery { socket, heard: Vec::new(), changed: false })
+        Ok(Discovery { socket, heard: Vec::new(), answered: None, changed: false })
     }
 
     /// Hears what came, and waits for a beacon if nothing did.
     pub fn listen(&mut self, wait: Duration) -> io::Result<()> {
+        self.answered = None;
         self.socket.set_nonblocking(false)?;
         self.socket.set_read_timeout(Some(wait))?;
         self.hear()?;
@@ -53,9 +60,13 @@ impl Discovery {
     /// Hears what came.
     pub fn catch_up(&mut self) -> io::Result<()> {
         self.socket.set_nonblocking(true)?;
-        while self.hear()? {}
+        let mut left = MANY;
+        while left > 0 && self.hear()? {
+            left -= 1;
+        }
         let before = self.heard.len();
-        self.heard.retain(|heard| heard.last.elapsed() < GONE);
+        let answered = self.answered.as_ref();
+        self.heard.retain(|heard| heard.last.elapsed() < GONE || Some(&heard.brick.serial) == answered);
         self.changed |= self.heard.len() != before;
         Ok(())
     }
@@ -65,7 +76,8 @@ impl Discovery {
         self.heard.iter().map(|heard| &heard.brick).find(|brick| wanted.fits(brick))
     }
 
-    pub fn answer(&self, brick: &Brick) {
+    pub fn answer(&mut self, brick: &Brick) {
+        self.answered = Some(brick.serial.clone());
         // Where it doesn't come through, the connection will fail and be tried again.
         for heard in self.heard.iter().filter(|heard| heard.brick == *brick) {
             let _ = self.socket.send_to(ANSWER, heard.from);
@@ -109,15 +121,13 @@ impl Discovery {
     }
 
     fn note(&mut self, heard: Heard) {
-        match self.heard.iter_mut().find(|known| known.brick.serial == heard.brick.serial) {
-            Some(known) => {
-                self.changed |= known.brick != heard.brick;
-                *known = heard;
-            }
-            None => {
-                self.changed = true;
-                self.heard.push(heard);
-            }
+        let serial = &heard.brick.serial;
+        if let Some(known) = self.heard.iter_mut().find(|known| known.brick.serial == *serial) {
+            self.changed |= known.brick != heard.brick;
+            *known = heard;
+        } else if self.heard.len() < MANY {
+            self.changed = true;
+            self.heard.push(heard);
         }
     }
 }

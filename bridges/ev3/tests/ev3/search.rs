@@ -82,3 +82,20 @@ fn what_is_no_beacon_is_not_a_brick() {
     lrp.until_up();
     brick.end();
 }
+
+#[test]
+fn a_flood_of_beacons_is_bounded() {
+    let port = port();
+    let mut lrp = listening(port, json!({ "name": "nobody" }));
+    lrp.until("listening", |event| matches!(event, Event::State { .. }).then_some(()));
+    let socket = UdpSocket::bind((Ipv4Addr::LOCALHOST, 0)).expect("a socket");
+    for number in 0..500 {
+        let beacon = format!("Serial-Number: {number}\r\nPort: 1\r\nName: x\r\nProtocol: EV3\r\n");
+        // The last of them may be the one too many for the socket.
+        let _ = socket.send_to(beacon.as_bytes(), (Ipv4Addr::LOCALHOST, port));
+        if number % 20 == 0 {
+            std::thread::sleep(std::time::Duration::from_millis(5));
+        }
+    }
+    found(&mut lrp, 64);
+}
