@@ -168,7 +168,8 @@ local function read(path)
       value = fresh(part)
       if value == nil then asked = part return nil end
     else
-      value = type(value) == "table" and rawget(value, math.tointeger(tonumber(part)) or part) or nil
+      if type(value) ~= "table" then return nil end
+      value = rawget(value, math.tointeger(tonumber(part)) or part)
       if value == nil then return nil end
     end
   end
