@@ -24,10 +24,27 @@ macro_rules! behaviors {
 
 behaviors!(concurrent escapement exit forcing line_follower line_keeper live_scenario resettable_timer stopwatch);
 
+/// Behaviours of robots whose bridges are plugins: lrp itself runs them, with the robots' descriptions.
+const OF_PLUGINS: [(&str, &str); 1] = [("behaviors/ev3/line_follower_test.lua", "liblrp_bridge_ev3.so")];
+
+#[test]
+fn behaviors_of_plugins() {
+    let lrp = Path::new(env!("CARGO_BIN_EXE_lrp"));
+    for (file, plugin) in OF_PLUGINS {
+        let plugin = lrp.with_file_name(plugin);
+        assert!(plugin.exists(), "{} is missing: run the tests by `cargo test --workspace`", plugin.display());
+        let ran = Command::new(lrp).args(["test", file]).output().unwrap();
+        assert!(ran.status.success(), "{}", String::from_utf8_lossy(&ran.stdout));
+    }
+}
+
 #[test]
 fn no_behavior_test_is_left_out() {
-    let files = test_files(&["behaviors".into()]).unwrap();
-    let listed: Vec<PathBuf> = BEHAVIORS.iter().map(|name| format!("behaviors/{name}_test.lua").into()).collect();
+    let mut files = test_files(&["behaviors".into()]).unwrap();
+    files.sort();
+    let listed = BEHAVIORS.iter().map(|name| PathBuf::from(format!("behaviors/{name}_test.lua")));
+    let mut listed: Vec<PathBuf> = listed.chain(OF_PLUGINS.map(|(file, _)| file.into())).collect();
+    listed.sort();
     assert_eq!(files, listed);
 }
 
