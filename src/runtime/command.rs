@@ -76,6 +76,11 @@ pub enum Command {
     FileChanged {
         file: String,
     },
+    /// Sends to a robot what a block would by `BRIDGE.what`: `move{ linear = { x = 0.1 } }`, `motorA:stop()`.
+    Tell {
+        bridge: String,
+        what: String,
+    },
     /// Puts a simulated robot back at its start.
     PutAtStart {
         bridge: String,

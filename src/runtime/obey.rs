@@ -61,6 +61,7 @@ impl Engine {
             Command::JumpTo { state } => self.force(self.state_called(&state)?, Forced::Jump),
             Command::Set { var, value } => self.set(&var, &value)?,
             Command::Reset { var } => self.reset(&var)?,
+            Command::Tell { bridge, what } => self.tell(&bridge, &what)?,
             Command::Break { at, mode } => self.set_breakpoint(&at, mode)?,
             Command::Step | Command::Rate { .. } | Command::PutAtStart { .. } | Command::FileChanged { .. } => {}
         }
@@ -141,6 +142,25 @@ impl Engine {
                 Err(Refused(format!("`{path}` has no value now: machine `{}` is not running", program[machine].path)))
             }
             None => Ok(var),
+        }
+    }
+
+    /// What is sent is among the records like anything that a block sends.
+    fn tell(&mut self, bridge: &str, what: &str) -> Result<(), Refused> {
+        let known = self.program.bridges.iter().map(|bridge| &*bridge.name);
+        if !known.clone().any(|name| name == bridge) {
+            return Err(refuse("robot", bridge, known));
+        }
+        let globals: Vec<(&str, Cell)> =
+            self.program.globals.iter().map(|&var| (&*self.program[var].name, self.store.cell(var))).collect();
+        let code = format!("{bridge}.{what}");
+        let wrong = |message: &str| Refused(format!("`{code}`: {message}"));
+        let block = self.store.lua.compile(&code, &globals).map_err(|error| wrong(&error.message))?;
+        let ran = self.store.lua.run(block);
+        self.store.lua.free_block(block);
+        match ran {
+            Ran::Done => Ok(()),
+            Ran::Failed => Err(wrong(&self.store.lua.take_failure().message)),
         }
     }
 

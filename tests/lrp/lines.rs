@@ -138,6 +138,7 @@ fn commanded(command: &Command) -> String {
         Command::Restart => "restart".into(),
         Command::Runstop => "runstop".into(),
         Command::FileChanged { file } => format!("file-changed {file}"),
+        Command::Tell { bridge, what } => format!("tell {bridge}.{what}"),
         Command::PutAtStart { bridge } => format!("put-at-start {bridge}"),
         Command::OnEdit { mode } => format!("on-edit {mode:?}").to_lowercase(),
         Command::Saves { mode } => format!("saves {mode:?}").to_lowercase(),

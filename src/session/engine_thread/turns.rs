@@ -217,6 +217,7 @@ impl<'n, N: Fn(News)> Loop<'n, N> {
             if !std::mem::replace(&mut self.loaded, true) {
                 let now = self.clock();
                 self.pace.resume(now);
+                self.status = Status::new();
             }
             // Before a block of it can hold anything up.
             self.flush();

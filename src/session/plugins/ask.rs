@@ -11,7 +11,7 @@ use super::folders::Plugin;
 use super::process::{Heard, Process};
 
 /// How long a bridge may take for it.
-const PATIENCE: Duration = Duration::from_secs(5);
+const PATIENCE: Duration = Duration::from_secs(10);
 const LAST_WORDS: Duration = Duration::from_millis(200);
 
 #[derive(Clone, Debug, PartialEq)]

@@ -154,6 +154,7 @@ fn command(command: &Command) -> String {
         Command::Restart => "restart".to_string(),
         Command::Runstop => "runstop".to_string(),
         Command::FileChanged { file } => format!("file {file} changed"),
+        Command::Tell { bridge, what } => format!("tell {bridge}.{what}"),
         Command::PutAtStart { bridge } => format!("put {bridge} at its start"),
         Command::OnEdit { mode } => format!("on edit: {mode:?}").to_lowercase(),
         Command::Saves { mode } => format!("saves: {mode:?}").to_lowercase(),

@@ -6,13 +6,14 @@ use ratatui::layout::Rect;
 use super::breakpoints::mark;
 use super::{Title, draw_nothing};
 use crate::model::{MachineId, Program, StateId};
+use crate::ui::action::Action;
 use crate::ui::app::App;
 use crate::ui::format;
 use crate::ui::glyphs;
 use crate::ui::layout::Pane;
 use crate::ui::pen::Pen;
 use crate::ui::tree::{Element, Row};
-use crate::ui::view::{Path, View, name};
+use crate::ui::view::{Mode, Path, View, name};
 
 pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
     let rows = app.tree();
@@ -37,6 +38,10 @@ fn nothing(app: &App) -> String {
             format!("Nothing runs yet: line {}", app.view().headline(first))
         }
         Some(first) => format!("Nothing runs yet: {}", app.view().headline(first)),
+        None if matches!(app.view().mode, Mode::Waiting { .. }) => {
+            let key = app.keys().name(Action::Pause);
+            format!("The program begins when its robots are there; {key} begins without.")
+        }
         None => "No machine yet. Write one in your editor and save: it runs at once.".into(),
     }
 }

@@ -34,7 +34,23 @@ impl View {
             What::Set { var, value, by } => self.set(var, value, by),
             What::Input { bridge, name, value } => self.input(bridge, name, value),
             What::Output { bridge, name, value } => self.output(bridge, name, value),
-            What::Call { .. } | What::Cancel { .. } | What::Reply { .. } | What::Offer { .. } | What::Found { .. } => {}
+            What::Call { bridge, name, id, arguments } => {
+                self.bridges.entry(bridge.clone()).or_default().call(record.t, *id, name, arguments);
+            }
+            What::Reply { bridge, id, done: false, value, .. } => {
+                self.bridges.entry(bridge.clone()).or_default().feedback(*id, value);
+            }
+            What::Reply { bridge, id, value, error, .. } => {
+                let result = error.clone().map_or_else(|| Ok(value.clone()), Err);
+                self.bridges.entry(bridge.clone()).or_default().end_call(record.t, *id, result);
+            }
+            What::Cancel { .. } => {}
+            What::Offer { bridge, description } => {
+                self.bridges.entry(bridge.clone()).or_default().offer = Some((**description).clone());
+            }
+            What::Found { bridge, found } => {
+                self.bridges.entry(bridge.clone()).or_default().found.clone_from(found);
+            }
             What::Log(log) => self.log(log),
             What::Error(fault) => self.fault(fault),
             What::Mended(mended) => self.mended(mended),
@@ -162,8 +178,9 @@ impl View {
     }
 
     fn input(&mut self, bridge: &Path, name: &Path, value: &Value) {
-        let message = Message { value: value.clone(), at: self.t };
-        self.bridges.entry(bridge.clone()).or_default().inputs.insert(name.clone(), message);
+        let inputs = &mut self.bridges.entry(bridge.clone()).or_default().inputs;
+        let message = Message::new(value.clone(), self.t, inputs.get(name));
+        inputs.insert(name.clone(), message);
         let world = self.world.as_mut().filter(|world| world.bridge == *bridge && world.pose_input == *name);
         if let Some(world) = world {
             world.moved(value);
@@ -171,8 +188,9 @@ impl View {
     }
 
     fn output(&mut self, bridge: &Path, name: &Path, value: &Value) {
-        let message = Message { value: value.clone(), at: self.t };
-        self.bridges.entry(bridge.clone()).or_default().outputs.insert(name.clone(), message);
+        let outputs = &mut self.bridges.entry(bridge.clone()).or_default().outputs;
+        let message = Message::new(value.clone(), self.t, outputs.get(name));
+        outputs.insert(name.clone(), message);
     }
 
     fn log(&mut self, log: &Log) {
