@@ -24,6 +24,7 @@ mod quoted;
 pub mod reads;
 pub mod renamed;
 pub mod resolve;
+pub mod settings;
 mod suggestion;
 pub mod transition_names;
 pub mod ways;

@@ -14,6 +14,8 @@ pub enum Action {
     TransitionTo,
     JumpTo,
     PutAtStart,
+    Tell,
+    ToggleRobots,
     EditValue,
     Increase,
     Decrease,
@@ -120,6 +122,8 @@ const SOURCE: Reach = Reach::Panes(&[Pane::Source]);
 const TREE: Reach = Reach::Panes(&[Pane::Machines]);
 const VALUES: Reach = Reach::Panes(&[Pane::Variables]);
 const LINES: Reach = Reach::Panes(&[Pane::Log, Pane::Source]);
+const ROBOTS: Reach = Reach::Panes(&[Pane::Bridge]);
+const LISTED: Reach = Reach::Panes(&[Pane::Variables, Pane::Bridge]);
 const LOG: Reach = Reach::Panes(&[Pane::Log]);
 
 macro_rules! table {
@@ -136,6 +140,7 @@ table! {
     Action::Runstop, "runstop", ["!"], "STOP", "stop the robot at once", Robot, Reach::Screen;
     Action::Runstop, "runstop-always", ["Ctrl-X"], "", "stop the robot at once, also while typing", Robot, Reach::Always;
     Action::PutAtStart, "put-at-start", ["b"], "", "put the simulated robot back at its start", Robot, Reach::Screen;
+    Action::Tell, "tell", ["Enter", "e"], "send", "send by hand; or write what is seen there into the program", Robot, ROBOTS;
 
     Action::Pause, "pause", ["Space"], "pause", "pause, or run on", Program, Reach::Screen;
     Action::Step, "step", ["s"], "step", "make one step; while it runs, pause", Program, Reach::Screen;
@@ -166,7 +171,7 @@ table! {
     Action::WriteAll, "write-all", ["W"], "", "all values marked * into their files", Values, Reach::Screen;
     Action::Reset, "reset", ["r"], "reset", "the initial value again", Values, VALUES;
     Action::Pin, "pin", ["p"], "pin", "keep it on top, or no more", Values, VALUES;
-    Action::Search, "search", ["/"], "find", "only what is called so; Esc shows all", Values, VALUES;
+    Action::Search, "search", ["/"], "find", "only what is called so; Esc shows all", Values, LISTED;
 
     Action::Up, "up", ["Up", "k"], "", "the row above", Moving, Reach::Screen;
     Action::Down, "down", ["Down", "j"], "", "the row below", Moving, Reach::Screen;
@@ -190,9 +195,11 @@ table! {
     Action::Focus(Pane::Log), "log", ["4"], "", "the log", Looking, Reach::Screen;
     Action::Focus(Pane::World), "world", ["5"], "", "the simulated world", Looking, Reach::Screen;
     Action::Focus(Pane::Source), "source", ["6"], "", "the program's text", Looking, Reach::Screen;
+    Action::Focus(Pane::Bridge), "robots", ["7"], "", "the robots: what comes and goes, calls, devices", Looking, Reach::Screen;
     Action::WhyNot, "why-not", ["y"], "why", "why not: what each way out of the state waits for, and back", Looking, Reach::Screen;
     Action::ToggleWorld, "toggle-world", ["w"], "world", "the world for the drawing, and back", Looking, Reach::Screen;
     Action::ToggleSource, "toggle-source", ["c"], "source", "the program's text for the drawing, and back", Looking, Reach::Screen;
+    Action::ToggleRobots, "toggle-robots", ["n"], "", "the robots for the drawing, and back", Looking, Reach::Screen;
     Action::Inspect, "inspect", ["i"], "inspect", "all about what is selected, and back", Looking, Reach::Screen;
     Action::Zoom, "zoom", ["z"], "", "the focused pane alone, and back", Looking, Reach::Screen;
     Action::Menu, "menu", ["a"], "menu", "what can be done with what is selected", Looking, Reach::Screen;

@@ -13,6 +13,7 @@ mod mouse;
 mod movement;
 mod perform;
 mod reading;
+mod robots;
 mod saves;
 mod scroll;
 mod source;
@@ -136,6 +137,10 @@ pub struct App {
     moment: Option<Moment>,
     /// The step in which something went wrong last, and what.
     fault: Option<(u64, ProblemKey)>,
+    /// The row of the robots a person is at, and which of what is seen there is listed.
+    robot_row: Option<String>,
+    robots_filter: String,
+    robots_scroll: Scroll,
     /// The line of the detail a person is at.
     detail_at: usize,
     /// Where a person is in the program's text, if they went there.
@@ -209,6 +214,9 @@ impl App {
             sent: None,
             moment: None,
             fault: None,
+            robot_row: None,
+            robots_filter: String::new(),
+            robots_scroll: Scroll::default(),
             detail_at: 0,
             cursor: None,
             source_left: 0,

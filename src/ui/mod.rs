@@ -22,6 +22,7 @@ pub mod panes;
 pub mod pen;
 pub mod pointer;
 pub mod quiet;
+pub mod robots;
 pub mod scope;
 pub mod settings;
 pub mod terminal;

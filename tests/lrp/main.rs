@@ -37,6 +37,7 @@ mod plugins;
 mod pty;
 mod quiet;
 mod renames;
+mod robots_on_screen;
 mod runs;
 mod runstop;
 mod saves;

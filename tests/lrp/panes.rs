@@ -15,7 +15,7 @@ use crate::story::{LINE_FOLLOWER, Story, program};
 fn wishes() -> impl Strategy<Value = (Pane, Figure, Simulated, usize)> {
     (
         prop::sample::select(Pane::ALL.to_vec()),
-        prop::sample::select(vec![Figure::Graph, Figure::World, Figure::Detail, Figure::Source]),
+        prop::sample::select(vec![Figure::Graph, Figure::World, Figure::Detail, Figure::Source, Figure::Bridge]),
         prop::sample::select(vec![Simulated::Nothing, Simulated::World]),
         0usize..60,
     )

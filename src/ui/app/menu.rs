@@ -106,6 +106,7 @@ impl App {
             Some(Target::Value(path)) => self.value.as_ref() == Some(&path),
             Some(Target::Log(place)) => self.reading.place.as_ref() == Some(&place),
             Some(Target::Detail(line)) => self.detail_at == line,
+            Some(Target::Robot(key)) => self.robot_row.as_ref() == Some(&key),
             Some(Target::Text(line, _)) => self.text_line() == Some(line),
             Some(Target::Transition(_)) | None => false,
         })

@@ -110,6 +110,7 @@ impl App {
                 self.detail_anew();
             }
             Target::Log(place) => self.take_log_row(place, row),
+            Target::Robot(key) => self.robot_row = Some(key),
             Target::Detail(line) => self.detail_at = line,
             Target::Text(line, offset) => self.go_to_text(line, offset),
         }
@@ -183,6 +184,10 @@ impl App {
             Pane::Source => {
                 let length = self.source().map_or(0, |(_, source)| source.line_count());
                 self.source_scroll.by(rows, length, page);
+            }
+            Pane::Bridge => {
+                let length = self.robot_rows().len();
+                self.robots_scroll.by(rows, length, page);
             }
             Pane::Graph | Pane::World => (),
         }

@@ -56,6 +56,7 @@ impl App {
             Pane::Log => self.go_in_log(how),
             Pane::Detail => self.go_in_detail(how),
             Pane::Source => self.go_in_source(how),
+            Pane::Bridge => self.go_in_robots(how),
             Pane::World => (),
         }
     }
@@ -183,7 +184,7 @@ impl App {
 
     /// The pane whose selection the detail tells of, where it has one.
     pub(super) fn take_as_subject(&mut self, pane: Pane) {
-        if self.subject != pane && !matches!(pane, Pane::Detail | Pane::World | Pane::Source) {
+        if self.subject != pane && !matches!(pane, Pane::Detail | Pane::World | Pane::Source | Pane::Bridge) {
             self.subject = pane;
             self.detail_anew();
         }
@@ -255,6 +256,9 @@ impl App {
         }
         if let Some(height) = self.seen_rows(Pane::Source) {
             self.settle_source(height);
+        }
+        if let Some(height) = self.seen_rows(Pane::Bridge) {
+            self.settle_robots(height);
         }
     }
 }

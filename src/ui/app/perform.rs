@@ -37,7 +37,9 @@ impl App {
             Action::WriteAll => return self.write_all(),
             Action::Reset => return self.reset(),
             Action::Pin => return self.pin(),
+            Action::Search if self.focus == Pane::Bridge => return self.search_robots(),
             Action::Search => return self.search(),
+            Action::Tell => return self.tell(),
             Action::SwitchOnEdit => return self.switch_on_edit(),
             Action::SwitchSaves => return self.switch_saves(),
             Action::HeldEdit => return self.show_held(),
@@ -74,6 +76,7 @@ impl App {
             }
             Action::ToggleWorld => self.toggle(Figure::World),
             Action::ToggleSource => self.toggle(Figure::Source),
+            Action::ToggleRobots => self.toggle(Figure::Bridge),
             Action::ScrollLeft => self.scroll_left(),
             Action::ScrollRight => self.scroll_right(),
             Action::Inspect => self.toggle(Figure::Detail),

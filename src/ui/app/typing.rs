@@ -8,6 +8,7 @@ use super::values::NOTHING_SELECTED;
 use super::{App, Effect, Overlay};
 use crate::runtime::command::{BreakAt, Breaking, Command};
 use crate::ui::format;
+use crate::ui::layout::Pane;
 use crate::ui::view::{Path, Renames};
 
 #[derive(Clone, Debug)]
@@ -26,6 +27,12 @@ pub enum Goal {
     Condition(Path),
     /// A part of the names that are listed.
     Filter,
+    /// The same of what a robot sees.
+    Seen,
+    /// To be sent to a robot.
+    Tell(Path),
+    /// A setting to be written into a robot's form.
+    Setting(Path),
 }
 
 /// Whose words stand in the line.
@@ -45,7 +52,7 @@ impl Goal {
         match self {
             Goal::Value(var) => *var = renames.variable(var),
             Goal::Condition(machine) => *machine = renames.place(machine),
-            Goal::Filter => (),
+            Goal::Filter | Goal::Seen | Goal::Tell(_) | Goal::Setting(_) => (),
         }
     }
 }
@@ -63,12 +70,12 @@ impl App {
 
     pub(super) fn type_on(&mut self, event: KeyEvent) -> Vec<Effect> {
         let Overlay::Typing(typing) = &mut self.overlay else { return Vec::new() };
-        let filters = typing.goal == Goal::Filter;
+        let filters = matches!(typing.goal, Goal::Filter | Goal::Seen);
         match event.code {
             KeyCode::Esc => {
                 self.overlay = Overlay::Nothing;
                 if filters {
-                    self.arrangement.filter.clear();
+                    self.filter_by(String::new());
                 }
             }
             KeyCode::Enter if filters => self.overlay = Overlay::Nothing,
@@ -81,18 +88,32 @@ impl App {
                 }
                 typing.input.handle_event(&TerminalEvent::Key(event));
                 if filters {
-                    self.arrangement.filter = typing.input.value().trim().to_owned();
+                    let filter = typing.input.value().trim().to_owned();
+                    self.filter_by(filter);
                 }
             }
         }
         Vec::new()
     }
 
+    /// Of the pane that has the focus.
+    fn filter_by(&mut self, filter: String) {
+        match self.focus {
+            Pane::Bridge => self.robots_filter = filter,
+            _ => self.arrangement.filter = filter,
+        }
+    }
+
     fn finish_typing(&mut self) -> Vec<Effect> {
         let Overlay::Typing(typing) = &self.overlay else { return Vec::new() };
         let (goal, text) = (typing.goal.clone(), typing.input.value().trim().to_owned());
         let command = match goal {
-            Goal::Filter => return Vec::new(),
+            Goal::Filter | Goal::Seen => return Vec::new(),
+            Goal::Tell(_) if text.is_empty() => {
+                return self.say("what is sent is written as in a block: move{ .. }; Esc leaves");
+            }
+            Goal::Tell(robot) => Command::Tell { bridge: robot.to_string(), what: text },
+            Goal::Setting(robot) => return self.write_setting(&robot, &text),
             Goal::Value(_) if text.is_empty() => {
                 return self.say("a value is a Lua expression, as in 128 or {x = 1}; Esc leaves");
             }

@@ -16,6 +16,8 @@ use crate::ui::view::{Path, name};
 pub struct WriteBack {
     pub rewrite: Rewrite,
     pub values: Vec<(Path, Value)>,
+    /// What it has for a robot's form.
+    pub setting: Option<String>,
 }
 
 impl App {
@@ -63,7 +65,11 @@ impl App {
             let here = values.iter().filter(|(var, _)| file_of(&program, *var) == file && !is_refused(*var));
             let values = here.map(|(var, value)| (program[*var].path.clone(), value.clone())).collect();
             let source = &program.sources[usize::from(file.0)];
-            WriteBack { rewrite: Rewrite { file: source.name.clone(), from: source.text.clone(), to }, values }
+            WriteBack {
+                rewrite: Rewrite { file: source.name.clone(), from: source.text.clone(), to },
+                values,
+                setting: None,
+            }
         };
         let all: Vec<WriteBack> = texts.into_iter().map(write_back).collect();
         match all.is_empty() {
@@ -75,11 +81,11 @@ impl App {
     /// What became of an `Effect::WriteBack`.
     pub fn written(&mut self, all: Vec<(WriteBack, Result<(), NotWritten>)>) {
         let mut told = Vec::new();
-        for (WriteBack { rewrite, values }, result) in all {
+        for (WriteBack { rewrite, values, setting }, result) in all {
             match result {
                 Ok(()) => {
                     let named = values.iter().map(|(path, value)| format!("{} {}", name(path), exactly(value)));
-                    let named = named.collect::<Vec<_>>().join(", ");
+                    let named = named.chain(setting).collect::<Vec<_>>().join(", ");
                     told.push(format!("written to {}: {named}", format::file_name(&rewrite.file)));
                     self.written.extend(values);
                     self.tour.iter_mut().for_each(|tour| tour.written(&self.view));

@@ -18,12 +18,21 @@ pub enum Pane {
     World,
     Detail,
     Source,
+    Bridge,
 }
 
 impl Pane {
     /// In the order that Tab goes through them.
-    pub const ALL: [Pane; 7] =
-        [Pane::Machines, Pane::Graph, Pane::World, Pane::Source, Pane::Detail, Pane::Variables, Pane::Log];
+    pub const ALL: [Pane; 8] = [
+        Pane::Machines,
+        Pane::Graph,
+        Pane::World,
+        Pane::Source,
+        Pane::Bridge,
+        Pane::Detail,
+        Pane::Variables,
+        Pane::Log,
+    ];
 
     pub fn title(self) -> &'static str {
         match self {
@@ -34,17 +43,19 @@ impl Pane {
             Pane::World => "world",
             Pane::Detail => "detail",
             Pane::Source => "source",
+            Pane::Bridge => "robots",
         }
     }
 }
 
-/// What the largest place shows where there is only one for four.
+/// What the largest place shows where there is only one for five.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Figure {
     Graph,
     World,
     Detail,
     Source,
+    Bridge,
 }
 
 impl Figure {
@@ -54,6 +65,7 @@ impl Figure {
             Figure::World => Pane::World,
             Figure::Detail => Pane::Detail,
             Figure::Source => Pane::Source,
+            Figure::Bridge => Pane::Bridge,
         }
     }
 
@@ -63,6 +75,7 @@ impl Figure {
             Pane::World => Some(Figure::World),
             Pane::Detail => Some(Figure::Detail),
             Pane::Source => Some(Figure::Source),
+            Pane::Bridge => Some(Figure::Bridge),
             Pane::Machines | Pane::Variables | Pane::Log => None,
         }
     }

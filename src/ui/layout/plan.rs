@@ -40,6 +40,7 @@ fn three_columns(body: Size, wish: Wish) -> Node {
 fn drawing(wish: Wish, has_detail: bool, below: Option<Pane>) -> Node {
     match wish.figure {
         Figure::World if below != Some(Pane::World) => Pane::World.into(),
+        Figure::Bridge if below != Some(Pane::Bridge) => Pane::Bridge.into(),
         Figure::Detail if !has_detail && below != Some(Pane::Detail) => Pane::Detail.into(),
         _ => Pane::Graph.into(),
     }
@@ -73,6 +74,7 @@ fn figures(wish: Wish) -> Node {
 fn second(wish: Wish) -> Option<Pane> {
     match (wish.figure, wish.simulated) {
         (Figure::Detail, _) => Some(Pane::Detail),
+        (Figure::Bridge, _) => Some(Pane::Bridge),
         (Figure::World, _) | (_, Simulated::World) => Some(Pane::World),
         (Figure::Graph | Figure::Source, Simulated::Nothing) => None,
     }

@@ -82,11 +82,19 @@ fn draw_typing(app: &App, typing: &Typing, mut pen: Pen, area: Rect) -> Position
     let (before, sign) = match &typing.goal {
         Goal::Value(var) => (var.to_string(), " = "),
         Goal::Filter => ("variables called".into(), " "),
+        Goal::Seen => ("seen there, called".into(), " "),
+        Goal::Tell(robot) => (robot.to_string(), "."),
+        Goal::Setting(robot) => (format!("into (bridge {robot} ..)"), " "),
         Goal::Condition(machine) if machine.is_empty() => ("pause when".into(), " "),
         Goal::Condition(machine) => (format!("{}: pause when", name(machine)), " "),
     };
     if pen.room() >= 58 {
-        let hint = if typing.goal == Goal::Filter { "Enter keeps  Esc shows all" } else { "Enter sets  Esc leaves" };
+        let hint = match typing.goal {
+            Goal::Filter | Goal::Seen => "Enter keeps  Esc shows all",
+            Goal::Tell(_) => "Enter sends  Esc leaves",
+            Goal::Setting(_) => "Enter writes it  Esc leaves",
+            Goal::Value(_) | Goal::Condition(_) => "Enter sets  Esc leaves",
+        };
         pen.put_right(hint, theme.dim()).put_right("  ", theme.dim());
     }
     pen.put(&format::fit(&before, pen.room() / 2), theme.bold()).put(sign, theme.dim());

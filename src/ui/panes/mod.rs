@@ -1,6 +1,7 @@
 //! What each pane shows, row by row. A pane reads the app and writes cells; it changes nothing.
 
 pub mod breakpoints;
+pub mod bridge;
 pub mod detail;
 pub mod diagram;
 pub mod footer;
@@ -53,6 +54,7 @@ pub fn draw(app: &App, pane: Pane, area: Rect, buffer: &mut Buffer) {
         Pane::World => world::draw(app, inside, buffer),
         Pane::Detail => detail::draw(app, inside, buffer),
         Pane::Source => source::draw(app, inside, buffer),
+        Pane::Bridge => bridge::draw(app, inside, buffer),
     };
     draw_title(app, pane, &title, Pen::new(buffer, area, 0));
 }
@@ -66,6 +68,8 @@ pub enum Target {
     /// A variable, a part of one, or what comes from a robot.
     Value(Path),
     Log(LogRow),
+    /// A row of the robots.
+    Robot(String),
     /// A line of the detail.
     Detail(usize),
     /// A line of a text, and the byte of it.
@@ -86,6 +90,7 @@ pub fn at(app: &App, pane: Pane, area: Rect, cell: Position) -> Option<Target> {
         Pane::Log => log::at(app, inside, row).map(Target::Log),
         Pane::Detail => detail::at(app, inside, row).map(Target::Detail),
         Pane::Source => source::at(app, inside, cell),
+        Pane::Bridge => app.robot_rows().get(app.robots_top() + row)?.key().map(Target::Robot),
         Pane::World => None,
     }
 }

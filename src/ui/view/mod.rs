@@ -22,7 +22,7 @@ use std::sync::Arc;
 
 use serde_json::Value;
 
-pub use bridge::{Bridge, Message};
+pub use bridge::{Bridge, Call, Message};
 pub use edit::{Edit, Outcome, describe, describe_shortly};
 pub use history::{History, PERIOD_MS};
 pub use journal::{Cause, Entry, Journal, Kind};
