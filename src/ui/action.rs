@@ -199,7 +199,7 @@ table! {
     Action::WhyNot, "why-not", ["y"], "why", "why not: what each way out of the state waits for, and back", Looking, Reach::Screen;
     Action::ToggleWorld, "toggle-world", ["w"], "world", "the world for the drawing, and back", Looking, Reach::Screen;
     Action::ToggleSource, "toggle-source", ["c"], "source", "the program's text for the drawing, and back", Looking, Reach::Screen;
-    Action::ToggleRobots, "toggle-robots", ["n"], "", "the robots for the drawing, and back", Looking, Reach::Screen;
+    Action::ToggleRobots, "toggle-robots", ["R"], "", "the robots for the drawing, and back", Looking, Reach::Screen;
     Action::Inspect, "inspect", ["i"], "inspect", "all about what is selected, and back", Looking, Reach::Screen;
     Action::Zoom, "zoom", ["z"], "", "the focused pane alone, and back", Looking, Reach::Screen;
     Action::Menu, "menu", ["a"], "menu", "what can be done with what is selected", Looking, Reach::Screen;
