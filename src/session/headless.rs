@@ -1,8 +1,10 @@
 //! `lrp run`: a program without a screen. Records go to a trace, what went wrong to standard error.
 
+use std::collections::BTreeSet;
 use std::io::{self, Write};
 use std::path::PathBuf;
 use std::process::ExitCode;
+use std::sync::Arc;
 use std::sync::mpsc::{Receiver, Sender, channel};
 
 use super::engine_thread::{End, News};
@@ -117,6 +119,8 @@ struct Outcome {
     refused: bool,
     /// At a breakpoint or because of an error: there is nobody to let it go on.
     paused: bool,
+    /// That have begun to connect. What keeps a robot from being made is told as an error.
+    robots: BTreeSet<Arc<str>>,
 }
 
 impl Outcome {
@@ -137,9 +141,18 @@ impl Outcome {
                 (self.paused, self.errors) = (true, true);
                 say(&format!("paused: {reason}; nobody can let it go on without a screen, so the run ends here"));
             }
-            What::Bridge(state) if state.world.is_none() => say(&robot_words(state)),
+            What::Bridge(state) => self.robot(state),
             What::Log(log) if log.level >= Level::Info => say(&format!("{}: {}", level(log.level), log.message)),
             _ => {}
+        }
+    }
+
+    fn robot(&mut self, state: &BridgeState) {
+        if state.state == Health::Connecting {
+            self.robots.insert(Arc::clone(&state.bridge));
+        }
+        if self.robots.contains(&state.bridge) {
+            say(&robot_words(state));
         }
     }
 

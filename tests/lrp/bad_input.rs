@@ -243,7 +243,7 @@ fn bridges_that_cannot_be() {
     fs::metadata("/dev/zero").unwrap();
     for (form, says) in [
         ("sjm", "error: there is no bridge of kind `sjm`; did you mean `sim`?"),
-        ("pr2000", "error: there is no bridge of kind `pr2000`; there is: "),
+        ("nao6000", "error: there is no bridge of kind `nao6000`; there is: "),
         ("sim [world = 'none.world']", "error: the world can't be read: none.world: no such file"),
         ("sim [world = '.']", "error: the world can't be read: .: this is a folder"),
         ("sim [world = '/dev/zero']", "error: the world can't be read: /dev/zero: this is a pipe or a device"),
