@@ -29,7 +29,7 @@ impl Bridge for Unruly {
             kind: "unruly".into(),
             version: "0".into(),
             summary: "misbehaves when told to".into(),
-            wants: vec![Want::Variables, Want::States],
+            wants: vec![Want::Variables, Want::States, Want::Log],
             ..About::default()
         }
     }
@@ -82,6 +82,7 @@ impl Bridge for Unruly {
                         machines.iter().map(|it| format!("{}/{}@{}", it.machine, it.state, it.since)).collect();
                     format!("states {t} {}", all.join(" "))
                 }
+                News::Log { level, message, state } => format!("log {level:?} {message} {state:?}"),
                 News::Answer { id, error } => format!("answer {id} {}", error.unwrap_or_default()),
             });
         }

@@ -112,6 +112,8 @@ pub enum News {
     Variables(Vec<Variable>),
     /// All machines that run. `t`: program time, ms.
     States { t: f64, machines: Vec<Active> },
+    /// What the program logs; `state`: whose block it was.
+    Log { level: Level, message: String, state: Option<String> },
     /// What became of a variable that was to be set; no error: done.
     Answer { id: u64, error: Option<String> },
 }

@@ -37,6 +37,14 @@ pub enum Order {
         t: f64,
         machines: Vec<Active>,
     },
+    /// What the program logs, for a bridge that wants it.
+    Log {
+        level: Level,
+        message: String,
+        /// Path of the state whose block says it; none: the program itself.
+        #[serde(default, skip_serializing_if = "Option::is_none")]
+        state: Option<String>,
+    },
 }
 
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

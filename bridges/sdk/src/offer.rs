@@ -36,6 +36,8 @@ pub enum Want {
     Variables,
     /// The active states, whenever they change.
     States,
+    /// What the program logs.
+    Log,
 }
 
 /// What a bridge offers under a configuration. May change while it is connected.

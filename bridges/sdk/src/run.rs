@@ -172,6 +172,7 @@ fn tell<B: Bridge>(bridge: &mut B, order: Order) {
         Order::Answer { id, error } => bridge.hear(News::Answer { id, error }),
         Order::Variables { variables } => bridge.hear(News::Variables(variables)),
         Order::States { t, machines } => bridge.hear(News::States { t, machines }),
+        Order::Log { level, message, state } => bridge.hear(News::Log { level, message, state }),
         Order::Describe { .. } | Order::Configure(_) | Order::Ping { .. } | Order::Stop => {}
     }
 }

@@ -14,7 +14,7 @@ const PROGRAM: &str = "(bridge robot unruly [diary = \"diary\", watches = true])
     (machine m
       (var n := [0])
       (state s (running [if what ~= \"\" then robot.misdo{ what = what } what = \"\" end]))
-      (state t (onentry [n = 5]))
+      (state t (onentry [n = 5 log.warn(\"there\")]))
       (on [goal == 7] s -> t))
     (spawn m s)";
 
@@ -33,6 +33,7 @@ fn variables_and_states_as_they_change() {
     run.command(Command::Set { var: "goal".into(), value: "7".into() });
     run.until("what changed", |_| noted("variables goal=7"));
     run.step_until("what followed", |_| noted("variables m/n=5") && noted("states 200 m/t@200"));
+    run.until("what it logged", |_| noted("log Warn there Some(\"m/t\")"));
 }
 
 #[test]
