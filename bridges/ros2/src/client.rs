@@ -1,0 +1,240 @@
+//! Calls of services: requests wait for their server to come up, replies find their request, and both have an end.
+
+use std::collections::BTreeMap;
+use std::sync::Arc;
+use std::time::Instant;
+
+use rustdds::SampleIdentity;
+use serde_json::Value;
+
+use crate::config::Mapping;
+use crate::dds::qos::Qos;
+use crate::dds::{Raw, ReaderId, Sample, Writer};
+use crate::graph::{Guid, Side};
+use crate::names::Role;
+use crate::node::{Node, decode, encode};
+use crate::types::Struct;
+
+/// Vendors write their number into each guid.
+const CYCLONE: [u8; 2] = [1, 16];
+
+/// Cyclone's mapping puts the client's id and the request's number in front.
+pub const HEADER: usize = 16;
+
+#[derive(Default)]
+pub struct Clients {
+    clients: BTreeMap<String, Client>,
+    pub mapping: Option<Mapping>,
+}
+
+/// What a reply is for.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Then {
+    /// A call of the program has its value.
+    Reply { call: u64 },
+    /// A goal is accepted, or isn't.
+    Accept { goal: [u8; 16] },
+    /// A goal is over.
+    Finish { goal: [u8; 16] },
+    /// A goal will be cancelled, or won't.
+    Cancel { goal: [u8; 16] },
+    /// A node described a type.
+    Learn { type_name: String },
+    /// A parameter was read.
+    Get { call: u64, name: String },
+    /// The type of a parameter is known, and it can be set.
+    Typed { call: u64, node: String, name: String, value: Value },
+    /// A parameter was set, or wasn't.
+    Set { call: u64 },
+    /// A node's parameters were listed.
+    List { call: u64 },
+}
+
+/// What is asked, and until when it is waited for.
+pub struct Request<'a> {
+    pub service: &'a str,
+    /// `std_srvs/srv/Trigger`
+    pub type_name: &'a str,
+    pub message: &'a Value,
+    pub then: Then,
+    pub until: Option<Instant>,
+}
+
+struct Client {
+    type_name: String,
+    request: Arc<Struct>,
+    response: Arc<Struct>,
+    writer: Writer,
+    replies: ReaderId,
+    /// Until the server is up.
+    waiting: Vec<Waiting>,
+    asked: BTreeMap<i64, Asked>,
+    next: i64,
+}
+
+struct Waiting {
+    bytes: Vec<u8>,
+    asked: Asked,
+}
+
+struct Asked {
+    then: Then,
+    until: Option<Instant>,
+}
+
+pub type Outcome = (Then, Result<Value, String>);
+
+impl Clients {
+    /// So that the server and we know each other before the first request.
+    pub fn prepare(&mut self, node: &mut Node, service: &str, type_name: &str) -> Result<(), String> {
+        if self.clients.get(service).is_some_and(|client| client.type_name == type_name) {
+            return Ok(());
+        }
+        let request = node.find(&format!("{type_name}_Request"))?;
+        let response = node.find(&format!("{type_name}_Response"))?;
+        self.close(node, service);
+        let client = Client {
+            type_name: type_name.to_string(),
+            replies: node.reader(service, Role::Reply, &response.name, Qos::DEFAULT)?,
+            writer: node.writer(service, Role::Request, &request.name, Qos::DEFAULT)?,
+            request,
+            response,
+            waiting: Vec::new(),
+            asked: BTreeMap::new(),
+            next: 0,
+        };
+        self.clients.insert(service.to_string(), client);
+        Ok(())
+    }
+
+    pub fn close(&mut self, node: &mut Node, service: &str) {
+        if let Some(client) = self.clients.remove(service) {
+            node.close_reader(client.replies);
+            node.close_writer(client.writer);
+        }
+    }
+
+    pub fn ask(&mut self, node: &mut Node, request: Request) -> Result<(), String> {
+        let Request { service, type_name, message, then, until } = request;
+        self.prepare(node, service, type_name)?;
+        let Some(client) = self.clients.get_mut(service) else { return Ok(()) };
+        let bytes = encode(&client.request, message)?;
+        client.waiting.push(Waiting { bytes, asked: Asked { then, until } });
+        client.send(node, service, self.mapping)
+    }
+
+    /// Whether a reader is a client's, and what has come of its requests.
+    pub fn receive(&mut self, node: &mut Node, reader: ReaderId) -> Option<Vec<Outcome>> {
+        let mapping = self.mapping;
+        let (service, client) = self.clients.iter_mut().find(|(_, client)| client.replies == reader)?;
+        let mapping = mapping.unwrap_or_else(|| mapping_of(node, service));
+        let mut outcomes = Vec::new();
+        while let Some(sample) = node.take(reader) {
+            outcomes.extend(client.reply(sample, mapping));
+        }
+        Some(outcomes)
+    }
+
+    /// Sends what waited for a server that is up by now, and gives up what took too long or has lost its server.
+    pub fn tick(&mut self, node: &mut Node, now: Instant) -> Vec<Outcome> {
+        let mut outcomes = Vec::new();
+        for (service, client) in &mut self.clients {
+            if client.waiting.is_empty() && client.asked.is_empty() {
+                continue;
+            }
+            if let Err(why) = client.send(node, service, self.mapping) {
+                outcomes.extend(client.waiting.drain(..).map(|waiting| (waiting.asked.then, Err(why.clone()))));
+            }
+            let is_late = |asked: &Asked| asked.until.is_some_and(|until| until <= now);
+            let type_name = &client.type_name;
+            let late = client.waiting.extract_if(.., |waiting| is_late(&waiting.asked));
+            let missing = format!("no server of {service} ({type_name}) has come up");
+            outcomes.extend(late.map(|waiting| (waiting.asked.then, Err(missing.clone()))));
+            let is_gone = !client.is_matched(node);
+            let late: Vec<i64> =
+                client.asked.iter().filter(|(_, asked)| is_gone || is_late(asked)).map(|(id, _)| *id).collect();
+            let why =
+                if is_gone { format!("the server of {service} is gone") } else { format!("{service} took too long") };
+            let late = late.into_iter().filter_map(|id| client.asked.remove(&id));
+            outcomes.extend(late.map(|asked| (asked.then, Err(why.clone()))));
+        }
+        outcomes
+    }
+
+    /// Nobody waits for this any more. Whether it hadn't been sent yet.
+    pub fn forget(&mut self, then: &Then) -> bool {
+        let mut was_waiting = false;
+        for client in self.clients.values_mut() {
+            client.asked.retain(|_, asked| asked.then != *then);
+            let before = client.waiting.len();
+            client.waiting.retain(|waiting| waiting.asked.then != *then);
+            was_waiting |= client.waiting.len() < before;
+        }
+        was_waiting
+    }
+}
+
+impl Client {
+    /// Both ways: a reply to a request that comes too early would be lost.
+    fn is_matched(&self, node: &Node) -> bool {
+        node.graph.is_matched(self.writer.guid()) && node.is_heard(self.replies)
+    }
+
+    fn send(&mut self, node: &Node, service: &str, mapping: Option<Mapping>) -> Result<(), String> {
+        if !self.is_matched(node) {
+            return Ok(());
+        }
+        let mapping = mapping.unwrap_or_else(|| mapping_of(node, service));
+        for Waiting { bytes, asked } in self.waiting.drain(..) {
+            let number = match mapping {
+                Mapping::FastDds => i64::from(self.writer.write(bytes)?.sequence_number),
+                Mapping::Cyclone => {
+                    self.next += 1;
+                    self.writer.write([header(self.writer.guid(), self.next).as_slice(), &bytes].concat())?;
+                    self.next
+                }
+            };
+            self.asked.insert(number, asked);
+        }
+        Ok(())
+    }
+
+    fn reply(&mut self, sample: Sample, mapping: Mapping) -> Option<Outcome> {
+        let own = self.writer.guid();
+        let (number, raw) = match mapping {
+            Mapping::FastDds => {
+                let SampleIdentity { writer_guid, sequence_number } = sample.related_sample_identity()?;
+                (writer_guid.to_bytes() == own).then_some((i64::from(sequence_number), sample.sample))?
+            }
+            Mapping::Cyclone => {
+                let (client, number, raw) = behind_header(sample.sample)?;
+                (client == header(own, 0)[..8]).then_some((number, raw))?
+            }
+        };
+        let asked = self.asked.remove(&number)?;
+        Some((asked.then, decode(&self.response, raw)))
+    }
+}
+
+/// As the server does it, which its vendor tells.
+fn mapping_of(node: &Node, service: &str) -> Mapping {
+    let mut servers = node.graph.endpoints(service, Role::Request);
+    match servers.any(|(guid, endpoint)| endpoint.side == Side::Reads && guid[..2] == CYCLONE) {
+        true => Mapping::Cyclone,
+        false => Mapping::FastDds,
+    }
+}
+
+fn header(guid: Guid, number: i64) -> [u8; HEADER] {
+    let mut header = [0; HEADER];
+    // The end of a guid differs within a participant, its middle among them.
+    header[..8].copy_from_slice(&guid[8..]);
+    header[8..].copy_from_slice(&number.to_le_bytes());
+    header
+}
+
+fn behind_header(raw: Raw) -> Option<([u8; 8], i64, Raw)> {
+    let (client, rest) = raw.bytes.split_first_chunk::<8>()?;
+    let (number, _) = rest.split_first_chunk::<8>()?;
+    Some((*client, i64::from_le_bytes(*number), Raw { bytes: raw.bytes.slice(HEADER..), order: raw.order }))
+}

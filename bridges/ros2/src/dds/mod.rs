@@ -1,0 +1,209 @@
+//! The network: a participant with readers and writers of bytes, and what is discovered of others. Knows names of DDS
+//! only, and no types.
+
+pub mod qos;
+mod raw;
+
+use std::collections::{BTreeSet, HashMap};
+use std::net::IpAddr;
+use std::sync::{Arc, Condvar, Mutex, MutexGuard};
+use std::task::{Wake, Waker};
+use std::time::Duration;
+
+use rustdds::no_key::{DataWriter, DeserializedCacheChange, SimpleDataReader};
+use rustdds::{
+    DomainParticipant, DomainParticipantBuilder, DomainParticipantStatusEvent, Publisher, RTPSEntity, SampleIdentity,
+    StatusEvented, Subscriber, TopicKind, WriteOptionsBuilder,
+};
+
+pub use raw::Raw;
+use raw::RawAdapter;
+
+use crate::dds::qos::Qos;
+
+pub type Sample = DeserializedCacheChange<Raw>;
+
+/// How often discovery is looked at, and how long anything else may be late.
+const TICK: Duration = Duration::from_millis(10);
+
+pub struct Link {
+    participant: DomainParticipant,
+    discovery: rustdds::DomainParticipantStatusListener,
+    publisher: Publisher,
+    subscriber: Subscriber,
+    readers: HashMap<usize, SimpleDataReader<Raw, RawAdapter>>,
+    next: usize,
+    signals: Arc<Signals>,
+}
+
+/// A reader of the link.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct ReaderId(usize);
+
+/// Which readers have something, for the thread that waits for it.
+#[derive(Default)]
+pub struct Signals {
+    ready: Mutex<Ready>,
+    woken: Condvar,
+}
+
+#[derive(Default)]
+struct Ready {
+    readers: BTreeSet<usize>,
+    closed: bool,
+}
+
+pub struct Writer {
+    writer: DataWriter<Raw, RawAdapter>,
+    pub qos: Qos,
+}
+
+impl Link {
+    /// With addresses: only their networks are used.
+    pub fn open(domain: u16, networks: Option<Vec<IpAddr>>) -> Result<Link, String> {
+        let mut builder = DomainParticipantBuilder::new(domain);
+        if let Some(networks) = networks {
+            builder = builder.with_only_networks(networks);
+        }
+        let failed = |error: rustdds::dds::CreateError| format!("can't join DDS domain {domain}: {error:?}");
+        let participant = builder.build().map_err(failed)?;
+        let policies = Qos::DEFAULT.for_writer();
+        Ok(Link {
+            discovery: participant.status_listener(),
+            publisher: participant.create_publisher(&policies).map_err(failed)?,
+            subscriber: participant.create_subscriber(&policies).map_err(failed)?,
+            participant,
+            readers: HashMap::new(),
+            next: 0,
+            signals: Arc::default(),
+        })
+    }
+
+    pub fn guid(&self) -> [u8; 16] {
+        self.participant.guid().to_bytes()
+    }
+
+    pub fn signals(&self) -> Arc<Signals> {
+        Arc::clone(&self.signals)
+    }
+
+    pub fn read(&mut self, topic: &str, type_name: &str, qos: Qos) -> Result<ReaderId, String> {
+        let policies = qos.for_reader();
+        let topic = self.topic(topic, type_name, &policies)?;
+        let reader = self
+            .subscriber
+            .create_simple_datareader_no_key(&topic, Some(policies))
+            .map_err(|error| format!("can't read `{}`: {error:?}", rustdds::TopicDescription::name(&topic)))?;
+        let id = self.next;
+        self.next += 1;
+        self.readers.insert(id, reader);
+        // What comes before the first look must not be missed.
+        self.signals.wake(id);
+        Ok(ReaderId(id))
+    }
+
+    pub fn close_reader(&mut self, id: ReaderId) {
+        self.readers.remove(&id.0);
+    }
+
+    pub fn write(&self, topic: &str, type_name: &str, qos: Qos) -> Result<Writer, String> {
+        let topic = self.topic(topic, type_name, &qos.for_reader())?;
+        let writer = self
+            .publisher
+            .create_datawriter_no_key(&topic, Some(qos.for_writer()))
+            .map_err(|error| format!("can't write `{}`: {error:?}", rustdds::TopicDescription::name(&topic)))?;
+        Ok(Writer { writer, qos })
+    }
+
+    fn topic(&self, name: &str, type_name: &str, policies: &rustdds::QosPolicies) -> Result<rustdds::Topic, String> {
+        self.participant
+            .create_topic(name.to_string(), type_name.to_string(), policies, TopicKind::NoKey)
+            .map_err(|error| format!("can't use `{name}` as {type_name}: {error:?}"))
+    }
+
+    pub fn reader_guid(&self, id: ReaderId) -> Option<[u8; 16]> {
+        self.readers.get(&id.0).map(|reader| reader.guid().to_bytes())
+    }
+
+    /// The next sample of a reader; none: there is no more for now, and its signal comes when there is.
+    pub fn take(&self, id: ReaderId) -> Option<Result<Sample, String>> {
+        let reader = self.readers.get(&id.0)?;
+        let look = || reader.try_take_one().map_err(|error| format!("{error:?}")).transpose();
+        look().or_else(|| {
+            reader.drain_read_notifications();
+            reader.set_waker(Some(Waker::from(Arc::new(Signal { reader: id.0, signals: self.signals() }))));
+            // What came between the last look and the waker would wake nobody.
+            look()
+        })
+    }
+
+    /// The next change in what others offer.
+    pub fn discover(&self) -> Option<DomainParticipantStatusEvent> {
+        self.discovery.try_recv_status()
+    }
+}
+
+impl Writer {
+    pub fn guid(&self) -> [u8; 16] {
+        self.writer.guid().to_bytes()
+    }
+
+    pub fn write(&self, bytes: Vec<u8>) -> Result<SampleIdentity, String> {
+        self.write_related(bytes, None)
+    }
+
+    /// In answer to something.
+    pub fn write_related(&self, bytes: Vec<u8>, to: Option<SampleIdentity>) -> Result<SampleIdentity, String> {
+        let options = WriteOptionsBuilder::new()
+            .source_timestamp(rustdds::Timestamp::now())
+            .related_sample_identity_opt(to)
+            .build();
+        self.writer.write_with_options(Raw::little(bytes), options).map_err(|error| match error {
+            rustdds::dds::WriteError::WouldBlock { .. } => "those who listen are too far behind".to_string(),
+            other => format!("{other:?}"),
+        })
+    }
+
+    /// Waits until all who listen have what was written, or it takes too long.
+    pub fn settle(&self, longest: Duration) {
+        let _ = self.writer.wait_for_acknowledgments(longest);
+    }
+}
+
+struct Signal {
+    reader: usize,
+    signals: Arc<Signals>,
+}
+
+impl Wake for Signal {
+    fn wake(self: Arc<Self>) {
+        self.signals.wake(self.reader);
+    }
+}
+
+impl Signals {
+    fn wake(&self, reader: usize) {
+        self.ready().readers.insert(reader);
+        self.woken.notify_one();
+    }
+
+    /// Ends the waiting for good.
+    pub fn close(&self) {
+        self.ready().closed = true;
+        self.woken.notify_one();
+    }
+
+    /// Waits a moment at most; the readers that have something. None: it is over.
+    pub fn wait(&self) -> Option<Vec<ReaderId>> {
+        let mut ready = self.ready();
+        if ready.readers.is_empty() && !ready.closed {
+            let woken = self.woken.wait_timeout(ready, TICK);
+            ready = woken.unwrap_or_else(|poisoned| poisoned.into_inner()).0;
+        }
+        (!ready.closed).then(|| std::mem::take(&mut ready.readers).into_iter().map(ReaderId).collect())
+    }
+
+    fn ready(&self) -> MutexGuard<'_, Ready> {
+        self.ready.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
+    }
+}

@@ -1,0 +1,10 @@
+//! All tests of the ROS 2 bridge, one binary. Those with a real ROS run in networks of their own.
+
+mod calls;
+mod codec;
+mod definitions;
+mod forms;
+mod graph;
+mod peers;
+mod topics;
+mod world;

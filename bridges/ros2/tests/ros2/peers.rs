@@ -1,0 +1,30 @@
+//! The real rclpy and Cyclone DDS: the Python programs of `tests/peers`, where these are installed.
+
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// A program of the peers' folder.
+pub fn python(program: &str) -> Option<Command> {
+    let mut command = Command::new(lrp_peers::python("ros2")?);
+    command.arg(Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/peers").join(program));
+    Some(command)
+}
+
+/// The `share` folder of the ROS that the peers are.
+pub fn share() -> Option<PathBuf> {
+    let python = lrp_peers::python("ros2")?;
+    Some(python.parent()?.parent()?.join("share"))
+}
+
+/// What a program says that is given this text.
+pub fn feed(command: &mut Command, text: &str) -> String {
+    let mut child = command.stdin(Stdio::piped()).stdout(Stdio::piped()).spawn().expect("python");
+    let mut stdin = child.stdin.take().expect("its input");
+    let text = text.to_string();
+    let writer = std::thread::spawn(move || stdin.write_all(text.as_bytes()));
+    let said = child.wait_with_output().expect("its end");
+    assert!(said.status.success());
+    writer.join().expect("a writer").expect("all read");
+    String::from_utf8(said.stdout).expect("text")
+}
