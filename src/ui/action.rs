@@ -68,6 +68,7 @@ pub enum Action {
     Zoom,
     Filter,
     OnlyMachine,
+    Copy,
     Back,
     Help,
     TourNext,
@@ -123,7 +124,8 @@ const TREE: Reach = Reach::Panes(&[Pane::Machines]);
 const VALUES: Reach = Reach::Panes(&[Pane::Variables]);
 const LINES: Reach = Reach::Panes(&[Pane::Log, Pane::Source]);
 const ROBOTS: Reach = Reach::Panes(&[Pane::Bridge]);
-const LISTED: Reach = Reach::Panes(&[Pane::Variables, Pane::Bridge]);
+/// What can be searched.
+const LISTS: Reach = Reach::Panes(&[Pane::Variables, Pane::Bridge, Pane::Log]);
 const LOG: Reach = Reach::Panes(&[Pane::Log]);
 
 macro_rules! table {
@@ -171,7 +173,7 @@ table! {
     Action::WriteAll, "write-all", ["W"], "", "all values marked * into their files", Values, Reach::Screen;
     Action::Reset, "reset", ["r"], "reset", "the initial value again", Values, VALUES;
     Action::Pin, "pin", ["p"], "pin", "keep it on top, or no more", Values, VALUES;
-    Action::Search, "search", ["/"], "find", "only what is called so; Esc shows all", Values, LISTED;
+    Action::Search, "search", ["/"], "find", "only what has this in its name or words; Esc shows all", Values, LISTS;
 
     Action::Up, "up", ["Up", "k"], "", "the row above", Moving, Reach::Screen;
     Action::Down, "down", ["Down", "j"], "", "the row below", Moving, Reach::Screen;
@@ -209,10 +211,11 @@ table! {
     Action::Taller, "taller", ["}", "Alt-Down"], "", "the focused pane taller", Looking, Reach::Screen;
     Action::Hide, "hide", ["x"], "", "hide the focused pane; its key shows it again", Looking, Reach::Screen;
     Action::ShowAll, "show-all", ["0"], "", "all panes, as large as usual", Looking, Reach::Screen;
-    Action::Filter, "filter", ["v"], "filter", "the log: all, transitions, the rest, warnings", Looking, LOG;
+    Action::Filter, "filter", ["v"], "filter", "the log: all, transitions, the rest, warnings, errors", Looking, LOG;
     Action::OnlyMachine, "only-machine", ["m"], "", "the log: only the selected machine, or all", Looking, LOG;
     Action::OpenEditor, "open-editor", ["o"], "open", "open your editor at the selected line", Looking, Reach::Screen;
     Action::OpenEditor, "open-editor-at-log", ["Enter"], "", "open your editor at the line", Looking, LINES;
+    Action::Copy, "copy", ["Y"], "", "to the clipboard: the path, value, line or detail selected", Looking, Reach::Screen;
     Action::Back, "back", ["Esc"], "", "leave: typing, help, full screen, detail", Looking, Reach::Screen;
 
     Action::Help, "help", ["?"], "help", "this help", Lrp, Reach::Screen;

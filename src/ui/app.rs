@@ -3,7 +3,9 @@
 
 mod answers;
 mod arranging;
+mod beat;
 mod breaking;
+mod copying;
 mod draw;
 mod follow;
 mod guide;
@@ -36,6 +38,7 @@ pub use source::{TextLine, Written};
 pub use typing::{Goal, Text, Typing};
 pub use writing::WriteBack;
 
+use self::beat::Beat;
 use self::follow::Follow;
 use self::moment::Moment;
 use self::scroll::Scroll;
@@ -89,6 +92,8 @@ pub enum Effect {
     },
     /// Files to be written; what became of it is told by `App::written`.
     WriteBack(Vec<WriteBack>),
+    /// A text for the clipboard.
+    Copy(String),
     /// After the robot was stopped.
     Quit,
     /// After the robot was stopped.
@@ -124,6 +129,7 @@ pub struct App {
     refused: String,
     reading: Reading,
     follow: Follow,
+    beat: Beat,
     overlay: Overlay,
     /// A sentence for the person, until the next key.
     message: Option<String>,
@@ -207,6 +213,7 @@ impl App {
             refused: String::new(),
             reading: Reading::default(),
             follow: Follow::default(),
+            beat: Beat::default(),
             overlay: Overlay::Nothing,
             message: None,
             halted: false,
@@ -262,6 +269,7 @@ impl App {
         if let Some(tour) = &mut self.tour {
             tour.record(record, &self.view);
         }
+        self.beat();
         self.dirty = true;
     }
 
@@ -277,6 +285,7 @@ impl App {
         };
         self.settle();
         self.reconsider_hint();
+        self.beat_now();
         self.dirty = true;
         effects
     }

@@ -151,6 +151,31 @@ pub fn source(value: &Value) -> Option<String> {
     is_whole(value).then(|| lua(value, &|n| n.to_string()))
 }
 
+/// With all its digits where it has a text, else as it is read.
+pub fn exactly(value: &Value) -> String {
+    source(value).unwrap_or_else(|| self::value(value))
+}
+
+/// What a value is: `integer`, `string of 5 characters`, `table of 2`.
+pub fn kind(value: &Value) -> String {
+    let counted = |of: &str, count: usize, noun: &str| match count {
+        1 => format!("{of} of 1{noun}"),
+        _ if noun.is_empty() => format!("{of} of {count}"),
+        _ => format!("{of} of {count}{noun}s"),
+    };
+    match value {
+        Value::Null => "nil".into(),
+        Value::Bool(_) => "boolean".into(),
+        Value::Number(number) if number.is_f64() => "number".into(),
+        Value::Number(_) => "integer".into(),
+        Value::String(text) if matches!(&**text, "nan" | "inf" | "-inf") => "number".into(),
+        Value::String(text) => counted("string", text.chars().count(), " character"),
+        Value::Array(items) => counted("table", items.len(), ""),
+        Value::Object(_) if marker(value).is_some() => "not to be written down".into(),
+        Value::Object(fields) => counted("table", fields.len(), ""),
+    }
+}
+
 fn is_whole(value: &Value) -> bool {
     match value {
         Value::Array(items) => items.iter().all(is_whole),

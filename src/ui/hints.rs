@@ -109,7 +109,7 @@ fn waiting(app: &App) -> Option<String> {
     let (program, view) = (app.program()?, app.view());
     let mut active = view.machines.values().filter_map(|machine| machine.active.as_ref().filter(|_| machine.running));
     let far = |path: &&super::view::Path| {
-        let timeout = program.state(path).and_then(|state| view.timeout(program, state));
+        let timeout = program.state(path).and_then(|state| view.timeout(program, state, view.t));
         timeout.is_some_and(|timeout| timeout.left() > FAR)
     };
     (view.mode == Mode::Running).then(|| active.find(far)).flatten().map(|path| name(path).to_string())
@@ -119,7 +119,7 @@ fn waiting(app: &App) -> Option<String> {
 fn staying(app: &App) -> Option<String> {
     let (program, view) = (app.program()?, app.view());
     let machine = &program[app.machine()?].path;
-    let (path, elapsed) = (view.active(machine)?, view.elapsed(machine)?);
+    let (path, elapsed) = (view.active(machine)?, view.elapsed(machine, view.t)?);
     let ways = &program[program.state(path)?].outgoing;
     let timed =
         |trigger: &Trigger| matches!(trigger, Trigger::After(_) | Trigger::AfterVar(_) | Trigger::AfterBlock(_));

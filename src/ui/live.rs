@@ -13,6 +13,8 @@ use crossterm::event::{Event as TerminalEvent, KeyCode, KeyModifiers};
 use ratatui::layout::Size;
 
 use super::app::{App, Effect, Event, Options, WriteBack};
+use super::cadence::Cadence;
+use super::clipboard::{self, Between};
 use super::editor::{self, Launch, Manner};
 use super::input::{Hold, Input, Received};
 use super::pointer::{Hand, Mouse};
@@ -28,9 +30,6 @@ use crate::session::live::{Session, Setup};
 use crate::session::signals::{Signal, Signals};
 use crate::session::trace::Trace;
 use crate::session::write_back::NotWritten;
-
-/// Frames are at least this far apart while the engine talks; a key is answered at once.
-const FRAME: Duration = Duration::from_millis(40);
 
 enum Happened {
     Terminal(Received),
@@ -182,22 +181,17 @@ enum Next {
 
 impl Live {
     fn run(&mut self, inbox: &Receiver<Happened>) -> ExitCode {
-        let mut drawn: Option<Instant> = None;
-        let mut at_once = true;
+        let started = Instant::now();
+        let mut cadence = Cadence::default();
         loop {
-            self.ask();
-            if self.app.dirty() && (at_once || drawn.is_none_or(|drawn| drawn.elapsed() >= FRAME)) {
+            self.send_explain();
+            if self.app.dirty() && cadence.wait(started.elapsed()).is_zero() {
                 if let Err(gone) = self.draw() {
                     return self.terminal_gone(&gone);
                 }
-                drawn = Some(Instant::now());
-                at_once = false;
+                cadence.drawn(started.elapsed());
             }
-            let wait = if self.app.dirty() {
-                drawn.map_or(Duration::ZERO, |drawn| FRAME.saturating_sub(drawn.elapsed()))
-            } else {
-                Duration::MAX
-            };
+            let wait = if self.app.dirty() { cadence.wait(started.elapsed()) } else { Duration::MAX };
             let mut next = match inbox.recv_timeout(wait) {
                 Ok(happened) => Some(happened),
                 Err(RecvTimeoutError::Timeout) => None,
@@ -206,7 +200,7 @@ impl Live {
             while let Some(happened) = next {
                 match self.take(happened) {
                     Next::Go => {}
-                    Next::Answer => at_once = true,
+                    Next::Answer => cadence.ask(),
                     Next::End(code) => return code,
                 }
                 next = inbox.try_recv().ok();
@@ -215,7 +209,7 @@ impl Live {
     }
 
     /// Guards are told only while somebody sees them.
-    fn ask(&mut self) {
+    fn send_explain(&mut self) {
         let mode = self.app.explain();
         if std::mem::replace(&mut self.explain, mode) != mode {
             self.session.commands().send(Command::Explain { mode });
@@ -315,6 +309,7 @@ impl Live {
             }
             Effect::OpenEditor { file, line, column } => self.open_editor(&file, line, column),
             Effect::WriteBack(all) => self.write_back(all),
+            Effect::Copy(text) => self.copy(&text),
             Effect::Quit => return Next::End(ExitCode::SUCCESS),
             Effect::Suspend => {
                 self.app.stopped();
@@ -335,6 +330,14 @@ impl Live {
             }
         }
         Next::Answer
+    }
+
+    fn copy(&mut self, text: &str) {
+        match clipboard::sequence(text, Between::here()) {
+            // A terminal that is gone is found out when the next frame is drawn.
+            Some(sequence) => drop(self.screen.send(&sequence)),
+            None => self.app.notice("that is too long for the clipboard"),
+        }
     }
 
     /// Beside this thread: a disk may take its time, and the stop key must not wait for it.

@@ -3,8 +3,11 @@
 
 pub mod action;
 pub mod app;
+pub mod cadence;
+pub mod clipboard;
 pub mod curve;
 pub mod editor;
+pub mod encoder;
 pub mod foreground;
 pub mod format;
 pub mod glyphs;

@@ -3,22 +3,24 @@
 
 use std::io::{self, Write};
 
-use crossterm::cursor::{Hide, MoveTo, Show};
-use crossterm::queue;
 use crossterm::terminal::window_size;
-use ratatui::backend::{Backend, ClearType, CrosstermBackend, WindowSize};
+use ratatui::backend::{Backend, ClearType, WindowSize};
 use ratatui::buffer::Cell;
 use ratatui::layout::{Position, Size};
+
+use super::encoder::Encoder;
 
 /// Assumed where the terminal doesn't tell its size.
 const USUAL: Size = Size { width: 80, height: 24 };
 
 pub struct Quiet<W: Write> {
-    inner: CrosstermBackend<Pending<W>>,
+    out: W,
+    /// What was never flushed is never sent: half a frame must not follow a panic onto the restored terminal.
+    encoder: Encoder,
     /// None where not known.
     cursor: Option<Cursor>,
+    /// Where a cursor that is shown stands.
     position: Option<Position>,
-    unsent: Unsent,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -27,33 +29,32 @@ enum Cursor {
     Hidden,
 }
 
-#[derive(Clone, Copy, PartialEq, Eq)]
-enum Unsent {
-    Nothing,
-    Something,
+/// Of the terminal.
+pub fn size() -> io::Result<Size> {
+    let seen = window_size()?;
+    let size = Size { width: seen.columns, height: seen.rows };
+    Ok(if size.area() == 0 { USUAL } else { size })
 }
 
 impl<W: Write> Quiet<W> {
-    pub fn new(out: W) -> Self {
-        let inner = CrosstermBackend::new(Pending { bytes: Vec::new(), out });
-        Quiet { inner, cursor: None, position: None, unsent: Unsent::Nothing }
+    /// `size`: of the terminal at the beginning.
+    pub fn new(out: W, size: Size) -> Self {
+        Quiet { out, encoder: Encoder::new(size), cursor: None, position: None }
     }
 
     /// To be called when someone else has written to the terminal.
     pub fn forget(&mut self) {
         self.cursor = None;
         self.position = None;
+        self.encoder.forget();
     }
 
-    fn set_cursor(&mut self, cursor: Cursor) -> io::Result<()> {
-        if self.cursor == Some(cursor) {
-            return Ok(());
-        }
-        self.cursor = Some(cursor);
-        self.unsent = Unsent::Something;
-        match cursor {
-            Cursor::Shown => queue!(self.inner, Show),
-            Cursor::Hidden => queue!(self.inner, Hide),
+    fn set_cursor(&mut self, cursor: Cursor) {
+        if self.cursor.replace(cursor) != Some(cursor) {
+            self.encoder.say(match cursor {
+                Cursor::Shown => "\x1b[?25h",
+                Cursor::Hidden => "\x1b[?25l",
+            });
         }
     }
 }
@@ -65,26 +66,18 @@ impl<W: Write> Backend for Quiet<W> {
     where
         I: Iterator<Item = (u16, u16, &'a Cell)>,
     {
-        let mut content = content.peekable();
-        if content.peek().is_none() {
-            return Ok(());
-        }
-        self.position = None;
-        self.unsent = Unsent::Something;
-        self.inner.draw(content)
-    }
-
-    fn append_lines(&mut self, lines: u16) -> io::Result<()> {
-        self.position = None;
-        self.inner.append_lines(lines)
+        content.for_each(|(x, y, cell)| self.encoder.cell(x, y, cell));
+        Ok(())
     }
 
     fn hide_cursor(&mut self) -> io::Result<()> {
-        self.set_cursor(Cursor::Hidden)
+        self.set_cursor(Cursor::Hidden);
+        Ok(())
     }
 
     fn show_cursor(&mut self) -> io::Result<()> {
-        self.set_cursor(Cursor::Shown)
+        self.set_cursor(Cursor::Shown);
+        Ok(())
     }
 
     fn get_cursor_position(&mut self) -> io::Result<Position> {
@@ -93,58 +86,37 @@ impl<W: Write> Backend for Quiet<W> {
 
     fn set_cursor_position<P: Into<Position>>(&mut self, position: P) -> io::Result<()> {
         let position = position.into();
-        if self.position == Some(position) {
-            return Ok(());
-        }
         self.position = Some(position);
-        self.unsent = Unsent::Something;
-        queue!(self.inner, MoveTo(position.x, position.y))
+        self.encoder.go_to(position);
+        Ok(())
     }
 
     fn clear(&mut self) -> io::Result<()> {
         self.clear_region(ClearType::All)
     }
 
-    fn clear_region(&mut self, region: ClearType) -> io::Result<()> {
-        self.inner.clear_region(region)
+    /// Always all of it: nothing else is on this screen.
+    fn clear_region(&mut self, _: ClearType) -> io::Result<()> {
+        let size = self.size()?;
+        self.encoder.clear(size);
+        Ok(())
     }
 
     fn size(&self) -> io::Result<Size> {
-        let seen = window_size()?;
-        let size = Size { width: seen.columns, height: seen.rows };
-        Ok(if size.area() == 0 { USUAL } else { size })
+        size()
     }
 
     fn window_size(&mut self) -> io::Result<WindowSize> {
-        self.inner.window_size()
+        let seen = window_size()?;
+        Ok(WindowSize { columns_rows: size()?, pixels: Size { width: seen.width, height: seen.height } })
     }
 
     fn flush(&mut self) -> io::Result<()> {
-        if self.unsent == Unsent::Nothing {
+        let frame = self.encoder.take();
+        if frame.is_empty() {
             return Ok(());
         }
-        self.unsent = Unsent::Nothing;
-        Backend::flush(&mut self.inner)
-    }
-}
-
-/// Bytes that wait for a flush. Unlike a `BufWriter` it drops what was never flushed: half a frame must not follow a
-/// panic onto the restored terminal.
-struct Pending<W> {
-    bytes: Vec<u8>,
-    out: W,
-}
-
-impl<W: Write> Write for Pending<W> {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        self.bytes.extend_from_slice(bytes);
-        Ok(bytes.len())
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        let sent = self.out.write_all(&self.bytes);
-        self.bytes.clear();
-        sent?;
+        self.out.write_all(frame.as_bytes())?;
         self.out.flush()
     }
 }

@@ -20,7 +20,7 @@ use crossterm::terminal::{EnterAlternateScreen, LeaveAlternateScreen, disable_ra
 use ratatui::{Frame, Terminal};
 
 use super::pointer::Mouse;
-use super::quiet::Quiet;
+use super::quiet::{self, Quiet};
 use crate::session::signals;
 
 /// The screen of the thread that entered it.
@@ -74,7 +74,7 @@ impl Screen {
     pub fn enter(mouse: Mouse, stop_the_robot: impl Fn() + Send + Sync + 'static) -> io::Result<Screen> {
         Self::check()?;
         let out = File::from(io::stdout().as_fd().try_clone_to_owned()?);
-        let terminal = Terminal::new(Quiet::new(out.try_clone()?))?;
+        let terminal = Terminal::new(Quiet::new(out.try_clone()?, quiet::size()?))?;
         let shared = Arc::new(Shared {
             owner: thread::current().id(),
             ours: AtomicBool::new(false),
@@ -94,6 +94,11 @@ impl Screen {
             return Ok(());
         }
         self.terminal.draw(render).map(drop)
+    }
+
+    /// What a terminal takes without showing anything.
+    pub fn send(&mut self, sequence: &str) -> io::Result<()> {
+        self.out.write_all(sequence.as_bytes())
     }
 
     /// Gives the terminal back for a while, to an editor for instance.

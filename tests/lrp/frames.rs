@@ -31,6 +31,8 @@ pub fn screen_with(settings: Settings, size: Size, story: &Story) -> App {
     for record in &story.records {
         app.record(record);
     }
+    // A screen that is drawn anew tells the very moment.
+    app.event(Event::Resize(size));
     app
 }
 
@@ -239,6 +241,26 @@ fn the_robot_stopped_and_lost() {
         world: None,
     }));
     check_one("stopped_80x24", &story, "");
+}
+
+#[test]
+fn a_robot_that_is_lost() {
+    let mut story = Story::searching();
+    story.at(90).tell(What::Bridge(BridgeState {
+        bridge: "robot".into(),
+        kind: "sim".into(),
+        state: Health::Lost,
+        message: Some("no answer for 2 s".into()),
+        world: None,
+    }));
+    check_at(&ALL_SIZES, "lost", &story, "");
+}
+
+#[test]
+fn a_screen_with_hardly_any_room() {
+    for (width, height) in [(20, 5), (19, 5), (30, 8)] {
+        check(&format!("tiny_{width}x{height}"), &screen(width, height, &Story::searching()));
+    }
 }
 
 #[test]

@@ -336,13 +336,16 @@ impl User {
     }
 }
 
+/// A cell that was never written to is blank as well.
+fn glyph(cell: &vt100::Cell) -> &str {
+    if cell.has_contents() { cell.contents() } else { " " }
+}
+
 /// The column and row, from 1, where a text begins.
 fn find(screen: &vt100::Screen, text: &str) -> Option<(u16, u16)> {
     let (rows, columns) = screen.size();
     let length = text.chars().count() as u16;
-    let cells = |row, column| {
-        (column..column + length).filter_map(move |column| screen.cell(row, column)).map(|cell| cell.contents())
-    };
+    let cells = |row, column| (column..column + length).filter_map(move |column| screen.cell(row, column)).map(glyph);
     let places = (0..rows).flat_map(|row| (0..columns.saturating_sub(length)).map(move |column| (row, column)));
     let found = places.into_iter().find(|&(row, column)| cells(row, column).collect::<String>() == text);
     found.map(|(row, column)| (column + 1, row + 1))

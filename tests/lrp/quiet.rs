@@ -7,7 +7,7 @@ use std::rc::Rc;
 use lrp::ui::quiet::Quiet;
 use ratatui::backend::Backend;
 use ratatui::buffer::Cell;
-use ratatui::layout::Position;
+use ratatui::layout::{Position, Size};
 
 /// Each write that reached the terminal.
 #[derive(Clone, Default)]
@@ -46,7 +46,7 @@ fn frame(quiet: &mut Quiet<Line>, cells: &[(u16, u16, &Cell)], cursor: Option<Po
 #[test]
 fn a_frame_is_one_write_and_an_unchanged_one_none() {
     let line = Line::default();
-    let mut quiet = Quiet::new(line.clone());
+    let mut quiet = Quiet::new(line.clone(), Size::new(80, 24));
     let cell = Cell::new("x");
     frame(&mut quiet, &[(0, 0, &cell), (5, 2, &cell)], None);
     let written = line.take();
@@ -60,7 +60,7 @@ fn a_frame_is_one_write_and_an_unchanged_one_none() {
 #[test]
 fn the_cursor_is_moved_only_when_it_is_elsewhere() {
     let line = Line::default();
-    let mut quiet = Quiet::new(line.clone());
+    let mut quiet = Quiet::new(line.clone(), Size::new(80, 24));
     let at = Some(Position { x: 3, y: 1 });
     frame(&mut quiet, &[], at);
     assert_eq!(line.take(), ["\x1b[?25h\x1b[2;4H"]);
@@ -77,7 +77,7 @@ fn the_cursor_is_moved_only_when_it_is_elsewhere() {
 #[test]
 fn half_a_frame_is_never_shown() {
     let line = Line::default();
-    let mut quiet = Quiet::new(line.clone());
+    let mut quiet = Quiet::new(line.clone(), Size::new(80, 24));
     quiet.draw([(0, 0, &Cell::new("x"))].into_iter()).unwrap();
     drop(quiet);
     assert_eq!(line.take(), [""; 0]);

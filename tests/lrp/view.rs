@@ -118,10 +118,10 @@ fn a_forced_state_tells_of_the_machines_on_the_way() {
 fn nudging_again_and_again_is_one_line() {
     let mut story = Story::searching();
     for (step, value) in [(90, 138), (91, 148), (92, 158)] {
-        story.at(step).set("lightlim", json!(value), "command").log(Level::Info, "between", "", 0);
+        story.at(step).set("lightlim", json!(value), "command").log(Level::Info, &format!("between {step}"), "", 0);
     }
     story.at(200).set("lightlim", json!(100), "command");
-    let lines = ["lightlim 128 → 158 (×3)", "between", "between", "between", "lightlim 158 → 100"];
+    let lines = ["lightlim 128 → 158 (×3)", "between 90", "between 91", "between 92", "lightlim 158 → 100"];
     assert_eq!(newest(&story.view(), 5), lines);
 }
 

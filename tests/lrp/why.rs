@@ -149,7 +149,7 @@ fn the_log_of_one_machine() {
     assert!(!seen.contains("moving → looking") && !seen.contains("outer"), "{seen}");
     press(&mut app, "v v v");
     assert!(frame(&app).contains("(m shows all machines)"), "{}", frame(&app));
-    press(&mut app, "m v");
+    press(&mut app, "m v v");
     assert!(frame(&app).contains("outer") && !frame(&app).contains("only lookalgo"), "{}", frame(&app));
 }
 

@@ -37,7 +37,6 @@ impl App {
             Action::WriteAll => return self.write_all(),
             Action::Reset => return self.reset(),
             Action::Pin => return self.pin(),
-            Action::Search if self.focus == Pane::Bridge => return self.search_robots(),
             Action::Search => return self.search(),
             Action::Tell => return self.tell(),
             Action::SwitchOnEdit => return self.switch_on_edit(),
@@ -50,6 +49,7 @@ impl App {
             Action::BreakWhen => return self.ask_for_condition(),
             Action::SwitchOnError => return self.switch_on_error(),
             Action::OpenEditor => return self.open_editor(),
+            Action::Copy => return self.copy(),
             Action::Menu => return self.open_menu(),
             Action::SwitchMouse => return self.switch_mouse(),
             Action::Hide => return self.hide(),
@@ -191,6 +191,8 @@ impl App {
             self.arrangement.filter.clear();
         } else if self.reading.place.is_some() && self.focus == Pane::Log {
             self.read_newest();
+        } else if self.focus == Pane::Log && !self.reading.text.is_empty() {
+            self.reading.text.clear();
         } else if self.figure != Figure::Graph || Figure::of(self.focus).is_some() {
             self.leave_figure();
         }

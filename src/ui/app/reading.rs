@@ -5,7 +5,7 @@ use super::movement::Move;
 use crate::runtime::record::Level;
 use crate::ui::layout::Pane;
 use crate::ui::panes::log;
-use crate::ui::view::{Entry, Gravity, Kind, Path, ProblemKey, View, name, within};
+use crate::ui::view::{Entry, Gravity, Kind, Path, Problem, ProblemKey, View, name, within};
 
 /// Lines from which on a problem may take two.
 const TALL: usize = 4;
@@ -19,8 +19,12 @@ pub struct Reading {
     pub filter: Filter,
     /// Only what belongs to this machine and what is in it.
     pub only: Option<Path>,
+    /// Only what has this in its words.
+    pub text: String,
     /// The number of the next entry when the place was taken.
     pub since: u64,
+    /// Entries from this number on are not listed yet.
+    pub until: u64,
 }
 
 #[derive(Clone, Debug, PartialEq)]
@@ -36,6 +40,7 @@ pub enum Filter {
     Transitions,
     WithoutChanges,
     Warnings,
+    Errors,
 }
 
 impl Filter {
@@ -44,7 +49,8 @@ impl Filter {
             Filter::Everything => Filter::Transitions,
             Filter::Transitions => Filter::WithoutChanges,
             Filter::WithoutChanges => Filter::Warnings,
-            Filter::Warnings => Filter::Everything,
+            Filter::Warnings => Filter::Errors,
+            Filter::Errors => Filter::Everything,
         }
     }
 
@@ -54,6 +60,7 @@ impl Filter {
             Filter::Transitions => "transitions",
             Filter::WithoutChanges => "without transitions",
             Filter::Warnings => "warnings only",
+            Filter::Errors => "errors only",
         }
     }
 
@@ -63,31 +70,57 @@ impl Filter {
             Filter::Transitions => matches!(entry.kind, Kind::Change(_)),
             Filter::WithoutChanges => !matches!(entry.kind, Kind::Change(_)),
             Filter::Warnings => matches!(entry.kind, Kind::Log(Level::Warn | Level::Error)),
+            Filter::Errors => matches!(entry.kind, Kind::Log(Level::Error)),
         }
     }
 
-    pub fn shows_problem(self, gravity: Gravity) -> bool {
-        self != Filter::Warnings || gravity > Gravity::Hint
+    fn shows_problem(self, gravity: Gravity) -> bool {
+        match self {
+            Filter::Warnings => gravity > Gravity::Hint,
+            Filter::Errors => gravity == Gravity::Error,
+            _ => true,
+        }
     }
 }
 
 impl Reading {
     pub fn shows(&self, entry: &Entry) -> bool {
-        self.filter.shows(entry) && self.only.as_ref().is_none_or(|machine| within(&entry.state, machine))
+        entry.number < self.until
+            && self.filter.shows(entry)
+            && self.only.as_ref().is_none_or(|machine| within(&entry.state, machine))
+            && self.finds([&entry.text, &*entry.state])
+    }
+
+    /// What belongs to no machine in particular concerns all of them.
+    fn shows_problem(&self, problem: &Problem) -> bool {
+        let here = |machine: &Path| problem.state.is_empty() || within(&problem.state, machine);
+        self.filter.shows_problem(problem.gravity)
+            && self.only.as_ref().is_none_or(here)
+            && self.finds([&problem.message, &*problem.state])
+    }
+
+    fn finds(&self, words: [&str; 2]) -> bool {
+        let wanted = self.text.to_lowercase();
+        wanted.is_empty() || words.iter().any(|words| words.to_lowercase().contains(&wanted))
     }
 
     /// What is left out, for the title.
     pub fn label(&self) -> String {
-        match (self.filter.label(), &self.only) {
+        let label = match (self.filter.label(), &self.only) {
             ("", Some(machine)) => format!("only {}", name(machine)),
             (label, Some(machine)) => format!("{label}, {}", name(machine)),
             (label, None) => label.into(),
+        };
+        match (self.text.is_empty(), label.is_empty()) {
+            (true, _) => label,
+            (false, true) => format!("/{}", self.text),
+            (false, false) => format!("/{}, {label}", self.text),
         }
     }
 
     /// The problems, then the entries with the newest first.
     pub fn rows(&self, view: &View) -> Vec<LogRow> {
-        let problems = view.problems.iter().filter(|problem| self.filter.shows_problem(problem.gravity));
+        let problems = view.problems.iter().filter(|problem| self.shows_problem(problem));
         let entries = view.journal.newest_first().filter(|entry| self.shows(entry));
         let problems = problems.map(|problem| LogRow::Problem(problem.key.clone()));
         problems.chain(entries.map(|entry| LogRow::Entry(entry.number))).collect()

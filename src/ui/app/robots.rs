@@ -61,12 +61,6 @@ impl App {
         Vec::new()
     }
 
-    pub(super) fn search_robots(&mut self) -> Vec<Effect> {
-        let input = Input::new(self.robots_filter.clone());
-        self.overlay = Overlay::Typing(Typing { goal: Goal::Seen, input, text: Text::Present });
-        Vec::new()
-    }
-
     /// The program's text with one more setting: saved, it is taken over like any edit, and reconnects nothing.
     pub(super) fn write_setting(&mut self, robot: &Path, text: &str) -> Vec<Effect> {
         let Some(program) = self.view.program.clone() else { return self.say("there is no program") };

@@ -25,10 +25,8 @@ pub enum Goal {
     Value(Path),
     /// To pause when it becomes true, as seen from a machine; empty: from top level.
     Condition(Path),
-    /// A part of the names that are listed.
-    Filter,
-    /// The same of what a robot sees.
-    Seen,
+    /// A part of the names or words that a pane lists.
+    Filter(Pane),
     /// To be sent to a robot.
     Tell(Path),
     /// A setting to be written into a robot's form.
@@ -52,7 +50,7 @@ impl Goal {
         match self {
             Goal::Value(var) => *var = renames.variable(var),
             Goal::Condition(machine) => *machine = renames.place(machine),
-            Goal::Filter | Goal::Seen | Goal::Tell(_) | Goal::Setting(_) => (),
+            Goal::Filter(_) | Goal::Tell(_) | Goal::Setting(_) => (),
         }
     }
 }
@@ -70,15 +68,16 @@ impl App {
 
     pub(super) fn type_on(&mut self, event: KeyEvent) -> Vec<Effect> {
         let Overlay::Typing(typing) = &mut self.overlay else { return Vec::new() };
-        let filters = matches!(typing.goal, Goal::Filter | Goal::Seen);
+        let filters = match typing.goal {
+            Goal::Filter(pane) => Some(pane),
+            _ => None,
+        };
         match event.code {
             KeyCode::Esc => {
                 self.overlay = Overlay::Nothing;
-                if filters {
-                    self.filter_by(String::new());
-                }
+                filters.into_iter().for_each(|pane| self.sought(pane).clear());
             }
-            KeyCode::Enter if filters => self.overlay = Overlay::Nothing,
+            KeyCode::Enter if filters.is_some() => self.overlay = Overlay::Nothing,
             KeyCode::Enter => return self.finish_typing(),
             code => {
                 let replaces =
@@ -87,20 +86,27 @@ impl App {
                     typing.input.reset();
                 }
                 typing.input.handle_event(&TerminalEvent::Key(event));
-                if filters {
-                    let filter = typing.input.value().trim().to_owned();
-                    self.filter_by(filter);
-                }
+                let typed = typing.input.value().trim().to_owned();
+                filters.into_iter().for_each(|pane| self.sought(pane).clone_from(&typed));
             }
         }
         Vec::new()
     }
 
-    /// Of the pane that has the focus.
-    fn filter_by(&mut self, filter: String) {
-        match self.focus {
-            Pane::Bridge => self.robots_filter = filter,
-            _ => self.arrangement.filter = filter,
+    /// What is called as typed is listed while it is typed.
+    pub(super) fn search(&mut self) -> Vec<Effect> {
+        let pane = self.focus;
+        let input = Input::new(self.sought(pane).clone());
+        self.overlay = Overlay::Typing(Typing { goal: Goal::Filter(pane), input, text: Text::Present });
+        Vec::new()
+    }
+
+    /// The text by which a pane's rows are chosen.
+    fn sought(&mut self, pane: Pane) -> &mut String {
+        match pane {
+            Pane::Log => &mut self.reading.text,
+            Pane::Bridge => &mut self.robots_filter,
+            _ => &mut self.arrangement.filter,
         }
     }
 
@@ -108,7 +114,7 @@ impl App {
         let Overlay::Typing(typing) = &self.overlay else { return Vec::new() };
         let (goal, text) = (typing.goal.clone(), typing.input.value().trim().to_owned());
         let command = match goal {
-            Goal::Filter | Goal::Seen => return Vec::new(),
+            Goal::Filter(_) => return Vec::new(),
             Goal::Tell(_) if text.is_empty() => {
                 return self.say("what is sent is written as in a block: move{ .. }; Esc leaves");
             }

@@ -1,9 +1,8 @@
 //! Nudging a variable's value: numbers by a tenth in round steps, booleans over and back; opening tables, pinning.
 
 use serde_json::{Number, Value};
-use tui_input::Input;
 
-use super::{App, Effect, Goal, Overlay, Text, Typing};
+use super::{App, Effect};
 use crate::runtime::command::Command;
 use crate::ui::format;
 use crate::ui::scope::Row;
@@ -87,13 +86,6 @@ impl App {
             Some(at) => _ = pinned.remove(at),
             None => pinned.push(path),
         }
-        Vec::new()
-    }
-
-    /// What is called as typed is listed while it is typed.
-    pub(super) fn search(&mut self) -> Vec<Effect> {
-        let input = Input::new(self.arrangement.filter.clone());
-        self.overlay = Overlay::Typing(Typing { goal: Goal::Filter, input, text: Text::Present });
         Vec::new()
     }
 }

@@ -84,7 +84,7 @@ impl App {
         for (WriteBack { rewrite, values, setting }, result) in all {
             match result {
                 Ok(()) => {
-                    let named = values.iter().map(|(path, value)| format!("{} {}", name(path), exactly(value)));
+                    let named = values.iter().map(|(path, value)| format!("{} {}", name(path), format::exactly(value)));
                     let named = named.chain(setting).collect::<Vec<_>>().join(", ");
                     told.push(format!("written to {}: {named}", format::file_name(&rewrite.file)));
                     self.written.extend(values);
@@ -106,7 +106,10 @@ impl App {
             let (file, line) = (&source.name, source.line(var.name_span.start as usize));
             let code = program[var.init].code.trim();
             let begins = format::fit(code, 30);
-            Some(format!("{file}:{line}: {path} was set to {} by hand; the file still has {begins}", exactly(value)))
+            Some(format!(
+                "{file}:{line}: {path} was set to {} by hand; the file still has {begins}",
+                format::exactly(value)
+            ))
         };
         self.unwritten().filter_map(line).collect()
     }
@@ -114,9 +117,4 @@ impl App {
 
 fn file_of(program: &Program, var: VarId) -> FileId {
     program[program[var].init].span.file
-}
-
-/// Unlike in the pane with all its digits.
-fn exactly(value: &Value) -> String {
-    format::source(value).unwrap_or_else(|| format::value(value))
 }

@@ -85,7 +85,7 @@ fn draw_robot(app: &App, name: &str, bridge: &Bridge, pen: &mut Pen) {
     match &bridge.message {
         Some(message) => pen.put(message, theme.normal()),
         None => {
-            let since = format::duration(app.view().t.since(bridge.since).ms());
+            let since = format::duration(app.shown_at().t.since(bridge.since).ms());
             pen.put(&format!("for {since}"), theme.dim())
         }
     };
@@ -99,7 +99,7 @@ fn draw_message(app: &App, message: Option<&Message>, type_name: &str, pen: &mut
         return;
     };
     let rate = if message.rate > 0.0 { format!("{}/s", format::number(message.rate.round())) } else { String::new() };
-    let age = format::duration(app.view().t.since(message.at).ms());
+    let age = format::duration(app.shown_at().t.since(message.at).ms());
     pen.put_right(" ", theme.dim()).right_column(&rate, 6, theme.dim()).right_column(&age, 9, theme.dim());
     pen.put(&format::message(&message.value), theme.normal());
 }
@@ -121,7 +121,7 @@ fn draw_call(app: &App, call: &Call, pen: &mut Pen) {
             pen.put("failed: ", theme.stop()).put(error, theme.normal());
         }
         (None, feedback) => {
-            pen.put_right(" ", theme.dim()).put_right(&format!("  {}", took(app.view().t)), theme.dim());
+            pen.put_right(" ", theme.dim()).put_right(&format!("  {}", took(app.shown_at().t)), theme.dim());
             pen.put("in flight", theme.fresh());
             if let Some(feedback) = feedback {
                 pen.put("  ", theme.normal()).put(&format::value(feedback), theme.normal());

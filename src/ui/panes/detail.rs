@@ -45,6 +45,8 @@ impl Default for Lead {
     }
 }
 
+/// Columns where it is written for others to read.
+const AMPLE: u16 = 160;
 /// Columns of a transition's answer: `1:02:04`.
 const LEAD: u16 = 7;
 
@@ -122,6 +124,15 @@ pub fn lines(app: &App, width: u16) -> Vec<Line> {
         _ => page.element(),
     }
     page.lines
+}
+
+/// All of it as plain text.
+pub fn text(app: &App) -> String {
+    let line = |Line { text, place, lead, .. }: Line| {
+        let words = [lead.text, text, place].into_iter().filter(|words| !words.is_empty());
+        words.collect::<Vec<_>>().join("  ")
+    };
+    lines(app, AMPLE).into_iter().map(line).collect::<Vec<_>>().join("\n")
 }
 
 struct Page<'a> {

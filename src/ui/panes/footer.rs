@@ -13,6 +13,7 @@ use crate::ui::app::{App, Goal, Overlay, Text, Typing};
 use crate::ui::format;
 use crate::ui::glyphs;
 use crate::ui::key::Key;
+use crate::ui::layout::Pane;
 use crate::ui::pen::Pen;
 use crate::ui::view::{Mode, name};
 use crate::ui::words;
@@ -81,8 +82,9 @@ fn draw_typing(app: &App, typing: &Typing, mut pen: Pen, area: Rect) -> Position
     let theme = app.theme();
     let (before, sign) = match &typing.goal {
         Goal::Value(var) => (var.to_string(), " = "),
-        Goal::Filter => ("variables called".into(), " "),
-        Goal::Seen => ("seen there, called".into(), " "),
+        Goal::Filter(Pane::Log) => ("lines with".into(), " "),
+        Goal::Filter(Pane::Bridge) => ("seen there, called".into(), " "),
+        Goal::Filter(_) => ("variables called".into(), " "),
         Goal::Tell(robot) => (robot.to_string(), "."),
         Goal::Setting(robot) => (format!("into (bridge {robot} ..)"), " "),
         Goal::Condition(machine) if machine.is_empty() => ("pause when".into(), " "),
@@ -90,7 +92,7 @@ fn draw_typing(app: &App, typing: &Typing, mut pen: Pen, area: Rect) -> Position
     };
     if pen.room() >= 58 {
         let hint = match typing.goal {
-            Goal::Filter | Goal::Seen => "Enter keeps  Esc shows all",
+            Goal::Filter(_) => "Enter keeps  Esc shows all",
             Goal::Tell(_) => "Enter sends  Esc leaves",
             Goal::Setting(_) => "Enter writes it  Esc leaves",
             Goal::Value(_) | Goal::Condition(_) => "Enter sets  Esc leaves",

@@ -62,6 +62,11 @@ fn nothing(app: &App) -> String {
         Filter::Transitions => format!("No transitions yet ({filter} shows all)"),
         Filter::WithoutChanges => format!("Nothing but transitions ({filter} shows all)"),
         Filter::Warnings => format!("No warnings or errors ({filter} shows all)"),
+        Filter::Errors => format!("No errors ({filter} shows all)"),
+    };
+    let nothing = match &*app.reading().text {
+        "" => nothing,
+        text => format!("Nothing says {text} ({} shows all)", app.keys().name(Action::Back)),
     };
     match &app.reading().only {
         Some(machine) => format!("{nothing}, in {} ({only} shows all machines).", name(machine)),
@@ -151,13 +156,13 @@ fn draw_entry(app: &App, entry: &Entry, place: Rect, buffer: &mut Buffer) {
         Kind::Change(cause) if place.width >= WIDE && app.reading().filter == Filter::Transitions => {
             draw_in_columns(app, entry, cause, &mut pen);
         }
-        Kind::Change(cause) => draw_change(app, entry, cause, &mut pen),
+        Kind::Change(_) => draw_change(app, entry, &mut pen),
         Kind::Hand(_) | Kind::Note => _ = pen.put(&entry.text, theme.normal()),
     }
 }
 
-/// The line and the transition's name where there is room for them whole.
-fn draw_change(app: &App, entry: &Entry, cause: &Cause, pen: &mut Pen) {
+/// The line where there is room for it; the transition's name is told in the list of transitions and in the detail.
+fn draw_change(app: &App, entry: &Entry, pen: &mut Pen) {
     let theme = app.theme();
     let text = format::width(&entry.text);
     let at = place(app, entry);
@@ -166,12 +171,6 @@ fn draw_change(app: &App, entry: &Entry, cause: &Cause, pen: &mut Pen) {
         pen.right_column(&at, columns, theme.dim());
     }
     pen.put(&entry.text, theme.normal());
-    if let Some(name) = &cause.name {
-        let name = format!("  ({name})");
-        if pen.room() >= format::width(&name) {
-            pen.put(&name, theme.dim());
-        }
-    }
 }
 
 /// Machine, way, trigger and name below each other, in columns that hold still while the list moves.
@@ -215,12 +214,10 @@ fn draw_log(app: &App, entry: &Entry, level: Level, columns: u16, pen: &mut Pen)
     if !at.is_empty() {
         pen.right_column(&at, format::width(&at).max(5), theme.dim());
     }
-    let (word, sign) = match level {
-        Level::Error => ("error", glyphs::CROSS),
-        Level::Warn => ("warn", "!"),
-        Level::Info => ("info", glyphs::DOT),
-        Level::Debug => ("debug", glyphs::DOT),
-    };
+    if entry.times > 1 {
+        pen.put_right(&format!(" {}{}", glyphs::TIMES, entry.times), theme.normal());
+    }
+    let (word, sign) = level_words(level);
     let text = if level == Level::Debug { theme.dim() } else { theme.normal() };
     let (mark, gap) = if columns < TIMED { (sign, " ") } else { (word, "  ") };
     pen.put(mark, theme.level(level)).put(gap, theme.level(level));
@@ -228,6 +225,28 @@ fn draw_log(app: &App, entry: &Entry, level: Level, columns: u16, pen: &mut Pen)
         pen.put(name(&entry.state), text).put(": ", text);
     }
     pen.put(&entry.text, text);
+}
+
+/// With room and without.
+fn level_words(level: Level) -> (&'static str, &'static str) {
+    match level {
+        Level::Error => ("error", glyphs::CROSS),
+        Level::Warn => ("warn", "!"),
+        Level::Info => ("info", glyphs::DOT),
+        Level::Debug => ("debug", glyphs::DOT),
+    }
+}
+
+/// A line as plain text.
+pub fn text(app: &App, entry: &Entry) -> String {
+    let level = match entry.kind {
+        Kind::Log(level) => level_words(level).0,
+        _ => "",
+    };
+    let times = if entry.times > 1 { format!("({} times)", entry.times) } else { String::new() };
+    let (clock, at) = (format::clock(entry.t), place(app, entry));
+    let words = [&*clock, level, name(&entry.state), &*entry.text, &*times, at.trim_start()];
+    words.into_iter().filter(|words| !words.is_empty()).collect::<Vec<_>>().join("  ")
 }
 
 /// Left out where the words need the room.

@@ -13,7 +13,7 @@ use crate::ui::glyphs;
 use crate::ui::layout::Pane;
 use crate::ui::pen::Pen;
 use crate::ui::tree::{Element, Row};
-use crate::ui::view::{Mode, Path, View, name};
+use crate::ui::view::{Mode, Path, name};
 
 pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
     let rows = app.tree();
@@ -113,7 +113,7 @@ fn draw_numbers(app: &App, program: &Program, id: StateId, pen: &mut Pen) {
     let state = &program[id];
     let visits = view.states.get(&state.path).map_or(0, |state| state.visits);
     let visits = if visits == 0 { String::new() } else { format!("{}{}", glyphs::TIMES, count(visits)) };
-    let time = time(view, program, id);
+    let time = time(app, program, id);
     let marked = if view.breaks_at_state(&state.path).is_some() { 2 } else { 0 };
     let spare = |pen: &Pen| pen.room().saturating_sub(format::width(&state.name) + 2 + marked);
     let times = if time.is_empty() { 0 } else { TIME };
@@ -124,7 +124,7 @@ fn draw_numbers(app: &App, program: &Program, id: StateId, pen: &mut Pen) {
         return;
     }
     pen.right_column(&time, TIME, theme.normal());
-    if let Some(timeout) = view.timeout(program, id).filter(|_| spare(pen) >= BAR) {
+    if let Some(timeout) = view.timeout(program, id, app.shown_at().t).filter(|_| spare(pen) >= BAR) {
         pen.right_column(&format::bar(timeout, BAR - 1), BAR, theme.active());
     }
 }
@@ -136,15 +136,16 @@ const VISITS: u16 = 5;
 const TIME: u16 = 10;
 
 /// `in 120 ms` until a timeout, or else how long the state has been active.
-fn time(view: &View, program: &Program, id: StateId) -> String {
-    match view.timeout(program, id).map(|timeout| timeout.left()) {
+fn time(app: &App, program: &Program, id: StateId) -> String {
+    let (view, now) = (app.view(), app.shown_at().t);
+    match view.timeout(program, id, now).map(|timeout| timeout.left()) {
         Some(left) if left < 0.5 => return "due".into(),
         Some(left) => return format!("in {}", format::duration(left)),
         None => (),
     }
     let state = &program[id];
     let active = view.is_active(&state.path);
-    let elapsed = view.elapsed(&program[state.machine].path).filter(|_| active);
+    let elapsed = view.elapsed(&program[state.machine].path, now).filter(|_| active);
     elapsed.map_or(String::new(), |elapsed| format::duration(elapsed.ms()))
 }
 

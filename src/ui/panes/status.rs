@@ -123,14 +123,14 @@ fn draw_pace(app: &App, mode: &Mode, room: Room, pen: &mut Pen) {
     if view.broken().is_some() || matches!(mode, Mode::Waiting { .. }) {
         return;
     }
-    let clock = format::clock(view.t);
+    let clock = format::clock(app.shown_at().t);
     let stands = room < Room::Ample && *mode != Mode::Running;
-    let pace = if stands { format!("step {}", view.step) } else { rate(app) };
+    let pace = if stands { format!("step {}", app.shown_at().step) } else { rate(app) };
     let column = if room > Room::Scarce { 9 } else { 7 };
     pen.column(&pace, format::width(&pace).max(column) + 2, theme.normal());
     pen.column(&clock, format::width(&clock).max(6) + 2, theme.normal());
     if room == Room::Ample {
-        pen.column(&format!("step {}", view.step), 14, theme.dim());
+        pen.column(&format!("step {}", app.shown_at().step), 14, theme.dim());
     }
 }
 

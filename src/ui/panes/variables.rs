@@ -119,7 +119,7 @@ fn draw_row(app: &App, row: &Row, style: Style, mut pen: Pen) {
             pen.put(name, style).put("  ", theme.normal());
             draw_age(app, *at, &mut pen);
             match way {
-                Way::Output if app.view().t.since(*at) > SENT => pen.put(glyphs::DASH, theme.dim()),
+                Way::Output if app.shown_at().t.since(*at) > SENT => pen.put(glyphs::DASH, theme.dim()),
                 _ => pen.put(&format::message(value), theme.normal()),
             };
         }
@@ -141,7 +141,7 @@ fn draw_fold(app: &App, row: &Row, pen: &mut Pen) {
 }
 
 fn draw_age(app: &App, at: Time, pen: &mut Pen) {
-    let age = format::duration(app.view().t.since(at).ms());
+    let age = format::duration(app.shown_at().t.since(at).ms());
     pen.put_right(" ", app.theme().dim()).right_column(&age, 8, app.theme().dim());
 }
 
@@ -149,13 +149,13 @@ fn draw_variable(app: &App, path: &Path, variable: &Variable, pen: &mut Pen) {
     let theme = app.theme();
     match &variable.value {
         Some(value) => {
-            let fresh = variable.is_fresh(app.view().t);
+            let fresh = variable.is_fresh(app.shown_at().t);
             draw_value(app, value, if fresh { theme.fresh() } else { theme.normal() }, pen);
         }
         None => _ = pen.column_right(glyphs::DASH, VALUE, theme.dim()),
     }
     let room = pen.room().saturating_sub(3);
-    let curve = variable.history.sampled(app.view().t, usize::from(room.min(CURVE)));
+    let curve = variable.history.sampled(app.shown_at().t, usize::from(room.min(CURVE)));
     if room < 4 {
         return;
     }

@@ -194,8 +194,7 @@ impl View {
     }
 
     fn log(&mut self, log: &Log) {
-        let place = (!log.file.is_empty()).then(|| (log.file.clone(), log.line));
-        self.journal.add(self.t, Kind::Log(log.level), log.message.clone(), log.state.clone(), place);
+        self.journal.log(self.t, log);
     }
 
     fn fault(&mut self, fault: &Fault) {

@@ -5,7 +5,7 @@ use std::collections::VecDeque;
 
 use super::{Path, name};
 use crate::model::TransitionId;
-use crate::runtime::record::Level;
+use crate::runtime::record::{Level, Log};
 use crate::runtime::time::Time;
 
 /// How many entries are kept.
@@ -28,6 +28,9 @@ pub struct Entry {
     pub state: Path,
     /// File and line where it was written, where it was written anywhere.
     pub place: Option<(Path, usize)>,
+    /// How often a program said this, the last time when.
+    pub times: u64,
+    pub last: Time,
 }
 
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -39,6 +42,13 @@ pub enum Kind {
     Hand(Hand),
     /// An edit, a pause, a restart, a robot coming or going.
     Note,
+}
+
+impl Kind {
+    /// Whether nobody misses it for half a second.
+    pub fn can_wait(&self) -> bool {
+        matches!(self, Kind::Change(_) | Kind::Log(Level::Debug | Level::Info))
+    }
 }
 
 /// The transition that was taken.
@@ -64,6 +74,8 @@ pub struct Hand {
 
 /// Within this time a variable set again is set by the same hand.
 const SAME_HAND: Time = Time(3_000_000);
+/// Within this time the same words in the same place are the same again.
+const SAME_VOICE: Time = Time(3_000_000);
 /// So far back it is looked for.
 const NEAR: usize = 40;
 
@@ -89,8 +101,23 @@ impl Journal {
         if self.entries.len() == KEPT {
             self.entries.pop_front();
         }
-        self.entries.push_back(Entry { number: self.next, t, kind, text, state, place });
+        self.entries.push_back(Entry { number: self.next, t, kind, text, state, place, times: 1, last: t });
         self.next += 1;
+    }
+
+    /// What a program says again and again is one entry.
+    pub fn log(&mut self, t: Time, log: &Log) {
+        let place = (!log.file.is_empty()).then(|| (log.file.clone(), log.line));
+        let is_same = |entry: &Entry| {
+            entry.kind == Kind::Log(log.level)
+                && entry.text == log.message
+                && (&entry.state, &entry.place) == (&log.state, &place)
+                && t.since(entry.last) < SAME_VOICE
+        };
+        match self.entries.iter_mut().rev().take(NEAR).find(|entry| is_same(entry)) {
+            Some(known) => (known.times, known.last) = (known.times + 1, t),
+            None => self.add(t, Kind::Log(log.level), log.message.clone(), log.state.clone(), place),
+        }
     }
 
     pub fn note(&mut self, t: Time, text: impl Into<String>) {
@@ -104,6 +131,10 @@ impl Journal {
                 hand.var = to(&hand.var);
             }
         }
+    }
+
+    pub fn newest(&self) -> Option<&Entry> {
+        self.entries.back()
     }
 
     /// Newest first.

@@ -56,20 +56,21 @@ impl Timeout {
 }
 
 impl View {
-    /// How long the active state of a machine has been active; none where it isn't running.
-    pub fn elapsed(&self, machine: &str) -> Option<Time> {
+    /// How long the active state of a machine has been active at a moment; none where it isn't
+    /// running or was entered since.
+    pub fn elapsed(&self, machine: &str, now: Time) -> Option<Time> {
         let machine = self.machines.get(machine).filter(|machine| machine.running)?;
         machine.active.as_ref()?;
-        Some(self.t.since(machine.entered))
+        (machine.entered <= now).then(|| now.since(machine.entered))
     }
 
     /// The timeout out of an active state that is due first, as far as its length is known without running Lua.
-    pub fn timeout(&self, program: &Program, state: StateId) -> Option<Timeout> {
+    pub fn timeout(&self, program: &Program, state: StateId, now: Time) -> Option<Timeout> {
         let state = &program[state];
         if !self.is_active(&state.path) {
             return None;
         }
-        let elapsed = self.elapsed(&program[state.machine].path)?.ms();
+        let elapsed = self.elapsed(&program[state.machine].path, now)?.ms();
         let lengths = state.outgoing.iter().filter_map(|&id| self.length(program, &program[id].trigger));
         let due = lengths.min_by(f64::total_cmp)?;
         Some(Timeout { elapsed, due })

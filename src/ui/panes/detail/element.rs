@@ -81,7 +81,8 @@ impl Page<'_> {
         let visits = seen.map_or(0, |state| state.visits);
         let left = seen.and_then(|state| state.last_left).map(format::clock);
         let now = if view.is_active(&state.path) {
-            let elapsed = view.elapsed(&program[state.machine].path).map_or(0.0, |elapsed| elapsed.ms());
+            let elapsed =
+                view.elapsed(&program[state.machine].path, self.app.shown_at().t).map_or(0.0, |elapsed| elapsed.ms());
             format!("active for {}", format::duration(elapsed))
         } else {
             left.map_or("never left".into(), |left| format!("left at {left}"))

@@ -26,6 +26,9 @@ impl Page<'_> {
                 });
                 self.add_at(Tone::Heading, format::clock(entry.t), place);
                 self.add_wrapped(Tone::Text, &entry.text);
+                if entry.times > 1 {
+                    self.add(Tone::Aside, format!("{} times, last at {}", entry.times, format::clock(entry.last)));
+                }
                 match &entry.kind {
                     Kind::Change(cause) => self.cause(cause),
                     _ if entry.state.is_empty() => (),

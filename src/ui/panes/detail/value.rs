@@ -1,5 +1,7 @@
 //! A variable with its history, or a field of a robot's message.
 
+use serde_json::Value;
+
 use super::{Page, Tone, place};
 use crate::ui::curve;
 use crate::ui::format;
@@ -27,8 +29,10 @@ impl Page<'_> {
         }
         match app.view().variables.get(path) {
             Some(variable) => {
-                let value = variable.value.as_ref().map_or("no value: its machine isn't running".into(), format::value);
-                self.add(Tone::Text, value);
+                match &variable.value {
+                    Some(value) => self.whole(value),
+                    None => self.add(Tone::Text, "no value: its machine isn't running"),
+                }
                 if let Some(previous) = &variable.previous {
                     let text = format!("was {}", format::value(previous));
                     self.add(Tone::Aside, text);
@@ -51,7 +55,7 @@ impl Page<'_> {
 
     /// Its greatest and least number at the right of it.
     fn curve(&mut self, history: &History) {
-        let numbers = history.sampled(self.app.view().t, usize::from(self.width.saturating_sub(LABEL).min(CURVE)));
+        let numbers = history.sampled(self.app.shown_at().t, usize::from(self.width.saturating_sub(LABEL).min(CURVE)));
         if !curve::moves(&numbers) {
             return;
         }
@@ -68,18 +72,22 @@ impl Page<'_> {
         self.add(Tone::Aside, format!("the last {span}"));
     }
 
+    /// All of a value, however long, and what it is.
+    fn whole(&mut self, value: &Value) {
+        self.add_wrapped(Tone::Text, &format::exactly(value));
+        self.add(Tone::Aside, format::kind(value));
+    }
+
     fn field(&mut self, path: &str) {
         for row in self.app.values().rows {
             match row {
                 Row::Field { path: other, value, at, .. } | Row::Message { path: other, value, at, .. }
                     if *other == *path =>
                 {
-                    self.add_wrapped(Tone::Text, &format::value(&value));
+                    self.whole(&value);
                     self.add(Tone::Aside, format!("at {}", format::clock(at)));
                 }
-                Row::Item { path: other, value, .. } if *other == *path => {
-                    self.add_wrapped(Tone::Text, &format::value(&value));
-                }
+                Row::Item { path: other, value, .. } if *other == *path => self.whole(&value),
                 _ => (),
             }
         }

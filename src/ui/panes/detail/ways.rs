@@ -6,6 +6,7 @@ use crate::model::transition_names::trigger_text;
 use crate::model::ways::{guard_block, ways_out};
 use crate::model::{Program, Sources, StateId, TransitionId, TransitionKind, Trigger};
 use crate::runtime::record::{Answer, Way};
+use crate::runtime::time::Time;
 use crate::ui::format;
 use crate::ui::glyphs;
 use crate::ui::panes::breakpoints::mark;
@@ -49,9 +50,9 @@ impl Page<'_> {
 
     /// What it came to, in a column of its own.
     fn answer(&self, program: &Program, id: TransitionId, found: &Way) -> (String, Tone) {
-        let left = found.after.and_then(|after| {
-            let elapsed = self.app.view().elapsed(&program[program[id].machine].path)?;
-            Some(format::duration((after - elapsed.ms()).max(0.0)))
+        let left = found.after.map(|after| {
+            let elapsed = self.app.view().elapsed(&program[program[id].machine].path, self.app.shown_at().t);
+            format::duration((after - elapsed.unwrap_or(Time::ZERO).ms()).max(0.0))
         });
         match (found.guard, left) {
             (Answer::True, _) => ("true".to_string(), Tone::Holds),
