@@ -267,6 +267,14 @@ impl Driver {
             };
             self.engine.describe(&robot.form.name, &description, stale);
         }
+        if self.engine.steps() == 0 {
+            // What robots said while the program waited for them: what it begins with may need it.
+            for robot in &mut self.robots {
+                if let Some(bridge) = robot.bridge.as_mut().filter(|bridge| bridge.is_heard_early()) {
+                    self.engine.receive(&messages(&robot.form.name, &mut **bridge));
+                }
+            }
+        }
         let result = self.engine.command(command);
         for state in states {
             self.engine.say(What::Bridge(state));

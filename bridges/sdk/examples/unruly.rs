@@ -37,7 +37,9 @@ impl Bridge for Unruly {
     fn offer(_: &Value) -> Result<Description, Vec<Problem>> {
         let beat = Port::new("beat", json!({ "count": 0 }), "one more, ten times a second");
         let misdeed = Port::new("misdo", json!({ "what": "" }), "the misdeed");
-        Ok(Description { inputs: vec![beat], outputs: vec![misdeed], scope: Scope::Closed, ..Description::default() })
+        let other = |count| Port::new(format!("other{count}"), Value::Null, "");
+        let inputs = std::iter::once(beat).chain((0..1000).step_by(111).map(other)).collect();
+        Ok(Description { inputs, outputs: vec![misdeed], scope: Scope::Closed, ..Description::default() })
     }
 
     fn connect(robot: Robot, form: Form) -> Unruly {

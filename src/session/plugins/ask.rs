@@ -48,7 +48,7 @@ fn hear<T>(inbox: &Receiver<Heard>, end: Instant, wanted: impl Fn(Event) -> Opti
     let mut complaint = None;
     loop {
         match inbox.recv_timeout(end.saturating_duration_since(Instant::now())) {
-            Ok(Heard::Event(event)) => {
+            Ok(Heard::Event(event, _)) => {
                 if let Some(found) = wanted(event) {
                     return Ok(found);
                 }

@@ -38,8 +38,8 @@ impl Folders {
         let mut folders = chosen.to_vec();
         folders.extend(env::var_os("LRP_BRIDGES").iter().flat_map(env::split_paths));
         if let Some(beside) = binary.parent() {
-            // `deps` is where cargo leaves libraries that it built for something else.
-            folders.extend([beside.to_path_buf(), beside.join("bridges"), beside.join("deps")]);
+            // `deps` is where cargo puts what it builds; beside the binary there may be an older copy.
+            folders.extend([beside.join("deps"), beside.to_path_buf(), beside.join("bridges")]);
             folders.extend(beside.parent().map(|prefix| prefix.join("lib/lrp/bridges")));
         }
         let home = || Some(PathBuf::from(env::var_os("HOME")?).join(".local/share"));

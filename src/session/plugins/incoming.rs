@@ -10,6 +10,8 @@ use crate::runtime::record::Health;
 
 /// Inputs of different names.
 const INPUTS: usize = 4096;
+/// Of all inputs together, as they came.
+const BYTES: usize = 32 << 20;
 /// Things said that may wait to be heard.
 const WAITING: usize = 1024;
 
@@ -50,9 +52,18 @@ pub struct Incoming {
     waiting: Mutex<Waiting>,
 }
 
+struct Latest {
+    name: String,
+    value: Value,
+    /// As it came.
+    bytes: usize,
+}
+
 #[derive(Default)]
 struct Waiting {
-    inputs: Vec<(String, Value)>,
+    inputs: Vec<Latest>,
+    /// Of all of them.
+    bytes: usize,
     said: VecDeque<Said>,
     /// Lost for want of room.
     dropped: u64,
@@ -61,12 +72,15 @@ struct Waiting {
 }
 
 impl Incoming {
-    pub fn input(&self, name: String, value: Value) {
+    /// `bytes`: how long it was as it came.
+    pub fn input(&self, name: String, value: Value, bytes: usize) {
         let waiting = &mut *self.waiting();
-        if let Some((_, latest)) = waiting.inputs.iter_mut().find(|(known, _)| *known == name) {
-            *latest = value;
-        } else if waiting.inputs.len() < INPUTS {
-            waiting.inputs.push((name, value));
+        if let Some(latest) = waiting.inputs.iter_mut().find(|latest| latest.name == name) {
+            waiting.bytes = waiting.bytes - latest.bytes + bytes;
+            (latest.value, latest.bytes) = (value, bytes);
+        } else if waiting.inputs.len() < INPUTS && waiting.bytes + bytes <= BYTES {
+            waiting.bytes += bytes;
+            waiting.inputs.push(Latest { name, value, bytes });
         } else {
             waiting.dropped += 1;
         }
@@ -93,7 +107,11 @@ impl Incoming {
 
     /// The latest message of each input that had one.
     pub fn take_inputs(&self) -> Vec<(String, Value)> {
-        std::mem::take(&mut self.waiting().inputs)
+        let mut waiting = self.waiting();
+        waiting.bytes = 0;
+        let inputs = std::mem::take(&mut waiting.inputs);
+        drop(waiting);
+        inputs.into_iter().map(|latest| (latest.name, latest.value)).collect()
     }
 
     /// What else was said, in order, and how much of it was lost.

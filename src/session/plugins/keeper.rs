@@ -190,8 +190,8 @@ impl Work {
         let heard = move |heard| drop(notes.send(Note::Heard(number, heard)));
         let line = Arc::clone(&self.line);
         let sorted = move |what: Heard| match what {
-            Heard::Event(Event::Input { name, value, .. }) => line.incoming.input(name, value),
-            Heard::Event(Event::Time { ms }) => line.incoming.time(ms),
+            Heard::Event(Event::Input { name, value, .. }, length) => line.incoming.input(name, value, length),
+            Heard::Event(Event::Time { ms }, _) => line.incoming.time(ms),
             other => heard(other),
         };
         let process = match Process::start(plugin, &self.plugins.host, sorted) {
@@ -296,11 +296,11 @@ impl Life {
 
     fn hear(&mut self, work: &mut Work, heard: Heard) -> Option<Loss> {
         match heard {
-            Heard::Event(Event::Hello { protocol, .. }) if !self.greeted => return self.hello(work, protocol),
-            Heard::Event(_) if !self.greeted => {
+            Heard::Event(Event::Hello { protocol, .. }, _) if !self.greeted => return self.hello(work, protocol),
+            Heard::Event(..) if !self.greeted => {
                 return Some(Loss::Refused("it doesn't begin with `hello`".to_string()));
             }
-            Heard::Event(event) => self.event(work, event),
+            Heard::Event(event, _) => self.event(work, event),
             Heard::Garbage(line) if !self.greeted => {
                 return Some(Loss::Refused(format!("it doesn't speak lrp's protocol: `{line}`")));
             }

@@ -27,7 +27,8 @@ pub struct Process {
 /// What is heard of a process, from its threads.
 #[derive(Debug)]
 pub enum Heard {
-    Event(Event),
+    /// With the length of its line.
+    Event(Event, usize),
     /// A line that is no event.
     Garbage(String),
     /// A line without an end.
@@ -127,7 +128,7 @@ fn read(output: impl Read, heard: &dyn Fn(Heard)) {
             Ok(length) => flow.take(length),
         }
         heard(match serde_json::from_slice(&line) {
-            Ok(event) => Heard::Event(event),
+            Ok(event) => Heard::Event(event, line.len()),
             Err(_) => Heard::Garbage(shown(&line)),
         });
     }

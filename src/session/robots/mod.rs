@@ -60,6 +60,10 @@ pub trait Bridge {
     fn time(&self) -> Option<Duration> {
         None
     }
+    /// Whether it may have said something before the program began.
+    fn is_heard_early(&self) -> bool {
+        false
+    }
     /// Whether the program may begin.
     fn is_ready(&self) -> bool {
         true

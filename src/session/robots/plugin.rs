@@ -110,7 +110,11 @@ impl Bridge for Connected {
     fn advance(&mut self, _: Time) {}
 
     fn sample(&mut self) -> Vec<(Arc<str>, Value)> {
-        let inputs = self.keeper.line().incoming.take_inputs();
+        let mut inputs = self.keeper.line().incoming.take_inputs();
+        if self.description.scope == Scope::Closed {
+            // What isn't offered can't be read; to tell blocks of it would only take time.
+            inputs.retain(|(name, _)| self.description.input(name).is_some());
+        }
         inputs.into_iter().map(|(name, value)| (name.into(), value)).collect()
     }
 
@@ -176,6 +180,10 @@ impl Bridge for Connected {
     fn time(&self) -> Option<Duration> {
         let ms = self.keeper.line().incoming.robots_time()?;
         Duration::try_from_secs_f64(ms / 1e3).ok()
+    }
+
+    fn is_heard_early(&self) -> bool {
+        true
     }
 
     fn is_ready(&self) -> bool {
