@@ -4,7 +4,7 @@
 use std::collections::VecDeque;
 use std::sync::{Condvar, Mutex, MutexGuard};
 
-use crate::message::Order;
+use crate::message::{Item, Order};
 
 /// Steps whose outputs may wait.
 const WAITING: usize = 256;
@@ -33,14 +33,15 @@ pub enum End {
 }
 
 impl Orders {
-    /// Gives how many outputs and calls were dropped for it.
-    pub fn put(&self, order: Order) -> usize {
+    /// Gives what is dropped for it: outputs that never arrive, calls that are over before they began.
+    pub fn put(&self, order: Order) -> Vec<Item> {
         let mut queue = self.queue();
-        let mut dropped = 0;
+        let mut dropped = Vec::new();
         match order {
             Order::Stop => {
-                queue.orders.retain(|order| !matches!(order, Order::Send { .. }));
-                queue.sends = 0;
+                while queue.sends > 0 {
+                    dropped.append(&mut queue.drop_oldest());
+                }
                 let connects = queue.orders.iter().rposition(|order| matches!(order, Order::Configure(_)));
                 queue.orders.insert(connects.map_or(0, |at| at + 1), order);
             }
@@ -84,14 +85,13 @@ impl Orders {
 }
 
 impl Queue {
-    fn drop_oldest(&mut self) -> usize {
+    /// Of what waits to be sent.
+    fn drop_oldest(&mut self) -> Vec<Item> {
         let oldest = self.orders.iter().position(|order| matches!(order, Order::Send { .. }));
+        self.sends = self.sends.saturating_sub(1);
         match oldest.and_then(|at| self.orders.remove(at)) {
-            Some(Order::Send { items }) => {
-                self.sends -= 1;
-                items.len()
-            }
-            _ => 0,
+            Some(Order::Send { items }) => items,
+            _ => Vec::new(),
         }
     }
 }

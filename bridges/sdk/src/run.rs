@@ -90,9 +90,15 @@ fn read(input: impl Read, orders: &Orders, robot: &Robot) {
         let Ok(line) = line else { break };
         // What this version doesn't know is left out, so that a newer lrp can say more.
         if let Ok(order) = serde_json::from_str(&line) {
-            match orders.put(order) {
-                0 => {}
-                count => robot.dropped("outputs and calls", count as u64),
+            let is_stop = order == Order::Stop;
+            let dropped = orders.put(order);
+            if !is_stop && !dropped.is_empty() {
+                robot.dropped("outputs and calls", dropped.len() as u64);
+            }
+            for item in dropped {
+                if let Item::Call(call) = item {
+                    robot.reply(call.id, Err("given up before it began".to_string()));
+                }
             }
         }
     }

@@ -116,6 +116,15 @@ fn a_stop_overtakes_what_waits_to_be_sent() {
 }
 
 #[test]
+fn a_call_that_a_stop_undoes_is_over() {
+    let mut lrp = diary();
+    lrp.send("wait", Value::Null);
+    let call = lrp.call("read", Vec::new());
+    lrp.order(Order::Stop);
+    assert_eq!(lrp.reply(call), Err("given up before it began".to_string()));
+}
+
+#[test]
 fn a_wrong_configuration_changes_nothing() {
     let mut lrp = diary();
     lrp.configure(json!({ "wrong": true }));

@@ -47,6 +47,13 @@ pub enum Said {
     },
 }
 
+impl Said {
+    /// A call that is over, and of which the bridge says nothing.
+    pub fn failed(id: u64, why: &str) -> Said {
+        Said::Reply { id, name: Arc::default(), done: true, value: Value::Null, error: Some(why.to_string()) }
+    }
+}
+
 #[derive(Default)]
 pub struct Incoming {
     waiting: Mutex<Waiting>,

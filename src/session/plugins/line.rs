@@ -5,7 +5,7 @@ use std::sync::{Arc, Mutex, MutexGuard};
 
 use lrp_bridge::{Item, Order, Orders};
 
-use super::incoming::Incoming;
+use super::incoming::{Incoming, Said};
 
 #[derive(Default)]
 pub struct Line {
@@ -19,12 +19,12 @@ pub struct Line {
 impl Line {
     /// What one step sends; nothing is sent late.
     pub fn send(&self, items: Vec<Item>) {
-        let count = items.len();
         let dropped = match &*self.orders() {
             Some(orders) => orders.put(Order::Send { items }),
-            None => count,
+            None => items,
         };
-        self.dropped.fetch_add(dropped as u64, Ordering::Relaxed);
+        self.dropped.fetch_add(dropped.len() as u64, Ordering::Relaxed);
+        self.fail_calls(dropped, "the robot isn't there");
     }
 
     /// Brings the robot to a halt, ahead of all that waits to be sent. From any thread.
@@ -34,13 +34,16 @@ impl Line {
 
     /// An order that only means something to a bridge that is connected.
     pub fn put(&self, order: Order) {
-        if let Some(orders) = &*self.orders() {
-            orders.put(order);
-        }
+        let dropped = self.orders().as_ref().map(|orders| orders.put(order)).unwrap_or_default();
+        self.fail_calls(dropped, "the robot was stopped");
     }
 
-    pub fn is_connected(&self) -> bool {
-        self.orders().is_some()
+    fn fail_calls(&self, items: Vec<Item>, why: &str) {
+        for item in items {
+            if let Item::Call(call) = item {
+                self.incoming.say(Said::failed(call.id, why));
+            }
+        }
     }
 
     /// How many outputs and calls were lost since this was last asked.

@@ -31,8 +31,6 @@ pub struct Connected {
     message: Option<String>,
     /// Calls that are not over, by id.
     calls: BTreeMap<u64, Arc<str>>,
-    /// Calls that ended here, as nobody was there to begin them.
-    ended: Vec<Said>,
     /// Outputs and calls that were lost, and when that was last told.
     lost: (u64, Option<Instant>),
 }
@@ -55,7 +53,6 @@ impl Connected {
             state: Health::Connecting,
             message: None,
             calls: BTreeMap::new(),
-            ended: Vec::new(),
             lost: (0, None),
         })
     }
@@ -72,12 +69,6 @@ impl Connected {
         Some(said)
     }
 
-    /// Calls don't outlive the connection.
-    fn end_calls(&mut self) {
-        let calls = std::mem::take(&mut self.calls);
-        self.ended.extend(calls.into_iter().map(|(id, name)| failed(id, name, "the robot was lost")));
-    }
-
     fn tell_losses(&mut self, all: &mut Vec<Said>) {
         let (lost, told) = &mut self.lost;
         *lost += self.keeper.line().take_dropped();
@@ -87,10 +78,6 @@ impl Connected {
             self.lost = (0, Some(Instant::now()));
         }
     }
-}
-
-fn failed(id: u64, name: Arc<str>, why: &str) -> Said {
-    Said::Reply { id, name, done: true, value: Value::Null, error: Some(why.to_string()) }
 }
 
 impl Bridge for Connected {
@@ -123,9 +110,10 @@ impl Bridge for Connected {
         let was = self.state;
         let mut all: Vec<Said> = said.into_iter().filter_map(|said| self.take(said)).collect();
         if was == Health::Up && self.state != Health::Up {
-            self.end_calls();
+            // Calls don't outlive the connection.
+            let ids: Vec<u64> = self.calls.keys().copied().collect();
+            all.extend(ids.into_iter().filter_map(|id| self.take(Said::failed(id, "the robot was lost"))));
         }
-        all.append(&mut self.ended);
         if dropped > 0 {
             let message = format!("{dropped} things that the bridge said were lost, as they came too fast");
             all.push(Said::Log { level: Level::Warn, message, from: None });
@@ -135,14 +123,9 @@ impl Bridge for Connected {
     }
 
     fn send(&mut self, items: Vec<Item>) {
-        let connected = self.keeper.line().is_connected();
         for item in &items {
-            match item {
-                Item::Call(call) if connected => drop(self.calls.insert(call.id, call.call.as_str().into())),
-                Item::Call(call) => {
-                    self.ended.push(failed(call.id, call.call.as_str().into(), "the robot isn't there"))
-                }
-                Item::Output(_) => {}
+            if let Item::Call(call) = item {
+                self.calls.insert(call.id, call.call.as_str().into());
             }
         }
         self.keeper.line().send(items);
