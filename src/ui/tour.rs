@@ -189,7 +189,7 @@ fn is_so(until: Until, view: &View) -> bool {
     match until {
         Until::Broken => is_broken(view),
         Until::Mended => !is_broken(view),
-        Until::Paused => view.mode != Mode::Running,
+        Until::Paused => matches!(view.mode, Mode::Paused { .. } | Mode::Stopped),
         Until::Going => view.mode == Mode::Running,
         Until::Held => view.held.is_some(),
         Until::Decided => is_met(Need::Taken, view),

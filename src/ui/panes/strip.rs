@@ -54,7 +54,7 @@ fn columns(area: Rect) -> u16 {
 
 fn draw_title(app: &App, tour: &Tour, mut pen: Pen) {
     let theme = app.theme();
-    draw_keys(app, &mut pen);
+    draw_keys(app, tour, &mut pen);
     pen.put(&format!(" {} ", tour.heading()), theme.selected()).put(" ", theme.normal());
     pen.put(tour.title(), theme.bold());
     if let Some(praise) = tour.praise() {
@@ -81,7 +81,7 @@ fn draw_compact(app: &App, tour: &Tour, area: Rect, buffer: &mut Buffer) {
     };
     let mut last = Pen::new(buffer, area, area.height.saturating_sub(1));
     if lines.len() < usize::from(area.height) {
-        draw_keys(app, &mut last);
+        draw_keys(app, tour, &mut last);
     }
     let first =
         Rect { x: area.x + indent, width: area.width.saturating_sub(indent), height: area.height.min(1), ..area };
@@ -96,9 +96,10 @@ fn draw_text(app: &App, lines: &[Vec<Word>], area: Rect, buffer: &mut Buffer) {
     }
 }
 
-fn draw_keys(app: &App, pen: &mut Pen) {
+fn draw_keys(app: &App, tour: &Tour, pen: &mut Pen) {
     let theme = app.theme();
-    for (action, label) in [("tour-strip", "hide"), ("tour-next", "skip")] {
+    let next = if tour.step().is_some() { "skip" } else { "again" };
+    for (action, label) in [("tour-strip", "hide"), ("tour-next", next)] {
         let key = app.keys().named(action);
         if pen.room() > 40 + format::width(&key) {
             pen.put_right(" ", theme.dim()).put_right(label, theme.dim()).put_right(" ", theme.dim());

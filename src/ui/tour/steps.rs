@@ -94,7 +94,7 @@ pub const STEPS: &[Step] = &[
                begins again.",
         until: Until::Changed,
         needs: &[Need::Taken, Need::Sound],
-        praise: "Faster at once.",
+        praise: "It counts already.",
     },
     Step {
         id: "break",
@@ -115,8 +115,8 @@ pub const STEPS: &[Step] = &[
     Step {
         id: "tune",
         title: "tune a number",
-        task: "Without the editor now: {variables} for the variables, {down} until you are at `speed`, then {increase} and \
-               {decrease}, while you watch the robot.",
+        task: "Back on this screen: {variables} for the variables, {down} until you are at `speed`, then {increase} and \
+               {decrease} while you watch the robot.",
         until: Until::Tuned,
         needs: &[Need::Alive],
         praise: "Tuned while driving.",
