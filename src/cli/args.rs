@@ -9,13 +9,18 @@ use clap::{ArgAction, Parser, Subcommand, ValueEnum};
 use super::explain::LIST;
 use crate::lua::{Access, Limits};
 use crate::model::Robot;
+use crate::runtime::record::Finding;
 use crate::runtime::{OnEdit, OnError, Options, Saves, Time};
 use crate::session::engine_thread::Pacing;
 use crate::session::live::Setup;
 use crate::session::pace::Rate;
 use crate::session::plugins::Plugins;
 use crate::session::trace::Clock;
+use crate::ui::config::{self, Look, Place};
+use crate::ui::glyphs::Charset;
 use crate::ui::pointer::Mouse;
+use crate::ui::settings::{Settings, Surroundings};
+use crate::ui::theme::Palette;
 use crate::ui::tour::folder;
 
 /// Live Robot Programming: state machines that change while they run.
@@ -79,6 +84,12 @@ pub enum Task {
         #[arg(default_value = folder::USUAL)]
         folder: PathBuf,
     },
+    /// Say where the configuration file is and what is wrong with it; exit code 1 if anything is
+    Config {
+        /// The file; by default the one that the screen would read
+        #[arg(value_name = "PATH")]
+        file: Option<PathBuf>,
+    },
     /// List the kinds of bridges, or what one offers
     Bridges {
         /// The kind whose inputs and outputs to list
@@ -106,6 +117,22 @@ pub struct LiveArgs {
     screen: ScreenArgs,
 }
 
+#[derive(Clone, Copy, ValueEnum)]
+enum ThemeName {
+    Auto,
+    Dark,
+    Light,
+    Mono,
+}
+
+#[derive(Clone, Copy, ValueEnum)]
+enum When {
+    Auto,
+    Always,
+    Never,
+}
+
+// How the screen is used and looks; what isn't said is in the configuration file, or as the terminal seems to be.
 #[derive(clap::Args)]
 struct ScreenArgs {
     /// Hold every save until a key applies or drops it
@@ -114,6 +141,15 @@ struct ScreenArgs {
     /// Leave the mouse to the terminal, which selects text with it
     #[arg(long, action = ArgAction::SetTrue)]
     no_mouse: bool,
+    /// The configuration file; by default $LRP_CONFIG, else lrp/config.toml in $XDG_CONFIG_HOME or ~/.config
+    #[arg(long, value_name = "PATH")]
+    config: Option<PathBuf>,
+    /// Colours for the ground the terminal has, or none
+    #[arg(long, value_name = "THEME", value_enum)]
+    theme: Option<ThemeName>,
+    /// Only ASCII characters, or never; by default as the locale says
+    #[arg(long, value_name = "WHEN", value_enum, num_args = 0..=1, require_equals = true, default_missing_value = "always")]
+    ascii: Option<When>,
 }
 
 #[derive(clap::Args)]
@@ -208,8 +244,32 @@ impl LiveArgs {
         Setup { options: Options { saves, ..setup.options }, ..setup }
     }
 
-    pub fn mouse(&self) -> Mouse {
-        if self.screen.no_mouse { Mouse::Terminals } else { Mouse::Ours }
+    /// The configuration file with what is said here over it, and what is wrong with the file.
+    pub fn settings(&self) -> (Settings, Vec<Finding>) {
+        let surroundings = Surroundings::here();
+        let mut config = config::load(&Place::here(self.screen.config.as_deref()));
+        let findings = std::mem::take(&mut config.findings);
+        (config.settings(self.screen.look(&surroundings), &surroundings), findings)
+    }
+}
+
+impl ScreenArgs {
+    /// `auto` is said too: it overrules the file.
+    fn look(&self, surroundings: &Surroundings) -> Look {
+        Look {
+            palette: self.theme.map(|name| match name {
+                ThemeName::Auto => surroundings.palette(),
+                ThemeName::Dark => Palette::Dark,
+                ThemeName::Light => Palette::Light,
+                ThemeName::Mono => Palette::Mono,
+            }),
+            charset: self.ascii.map(|when| match when {
+                When::Auto => surroundings.charset(),
+                When::Always => Charset::Ascii,
+                When::Never => Charset::Unicode,
+            }),
+            mouse: self.no_mouse.then_some(Mouse::Terminals),
+        }
     }
 }
 

@@ -3,6 +3,7 @@
 mod args;
 mod bridges;
 mod check;
+mod config;
 mod explain;
 mod graph;
 mod new;
@@ -29,7 +30,7 @@ pub fn main() -> ExitCode {
         Err(error) => return wrong(&error),
     };
     match args.task() {
-        Task::Live(live) => live::run(live.setup(), live.run.trace.clone(), live.mouse(), None),
+        Task::Live(live) => live::run(live.setup(), live.settings(), live.run.trace, None),
         Task::Run(run) => crate::session::headless::run(run.setup(), run.trace),
         Task::Check { explain: Some(code), .. } => explain::explain(&code),
         Task::Check { files, format, bridge_path, .. } => check::check(&files, format, &Plugins::here(&bridge_path)),
@@ -37,6 +38,7 @@ pub fn main() -> ExitCode {
         Task::New { name } => new::create(&name),
         Task::Tour { folder } => tour::take(folder),
         Task::Test { paths } => crate::session::test_runner::run(&paths),
+        Task::Config { file } => config::check(file.as_deref()),
         Task::Bridges { kind, bridge_path } => bridges::list(kind.as_deref(), &Plugins::here(&bridge_path)),
         Task::BridgeHost { library } => crate::session::plugins::host(&library),
     }

@@ -5,8 +5,8 @@ use std::process::ExitCode;
 
 use super::args::LiveArgs;
 use super::output::{fail, finish};
+use crate::ui::config;
 use crate::ui::live::{self, Guide};
-use crate::ui::settings::Surroundings;
 use crate::ui::terminal::Screen;
 use crate::ui::tour::{STEPS, Tour, folder};
 
@@ -23,13 +23,13 @@ pub fn take(folder: PathBuf) -> ExitCode {
     };
     let guide = Guide { tour: folder::resume(&folder), folder: folder.clone() };
     let live = LiveArgs::of(file);
-    let code = live::run(live.setup(), live.run.trace.clone(), live.mouse(), Some(guide));
+    let code = live::run(live.setup(), live.settings(), live.run.trace, Some(guide));
     let done = folder::resume(&folder).done();
     let said = match STEPS.len() - done {
         0 => format!("That was the tour. What it ran is yours, in {}.", folder.display()),
         left => format!("{done} of {} tasks are done. `{}` goes on with {left}.", STEPS.len(), again(&folder)),
     };
-    finish(&format!("{said}\n{}", Tour::outlook(&live::settings(&Surroundings::here()).keys)), code)
+    finish(&format!("{said}\n{}", Tour::outlook(&config::usual().keys)), code)
 }
 
 fn again(folder: &Path) -> String {

@@ -27,7 +27,7 @@ pub fn welcome() -> ExitCode {
     match ask(folder::begun(Path::new(folder::USUAL))) {
         Ok(Wanted::Program(file)) => {
             let live = LiveArgs::of(file);
-            live::run(live.setup(), live.run.trace.clone(), live.mouse(), None)
+            live::run(live.setup(), live.settings(), live.run.trace, None)
         }
         Ok(Wanted::Tour) => tour::take(PathBuf::from(folder::USUAL)),
         Ok(Wanted::Nothing(code)) => code,

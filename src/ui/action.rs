@@ -73,6 +73,7 @@ pub enum Action {
     Help,
     TourNext,
     TourStrip,
+    Palette,
     Quit,
     Suspend,
     Redraw,
@@ -218,6 +219,7 @@ table! {
     Action::Copy, "copy", ["Y"], "", "to the clipboard: the path, value, line or detail selected", Looking, Reach::Screen;
     Action::Back, "back", ["Esc"], "", "leave: typing, help, full screen, detail", Looking, Reach::Screen;
 
+    Action::Palette, "palette", [":", "Ctrl-P"], "", "all that can be done or gone to, by name", Lrp, Reach::Screen;
     Action::Help, "help", ["?"], "help", "this help", Lrp, Reach::Screen;
     Action::TourNext, "tour-next", ["n"], "", "the tour: skip this task; at its end, take up what was skipped", Lrp, Reach::Screen;
     Action::TourStrip, "tour-strip", ["N"], "", "the tour: its strip away, and back", Lrp, Reach::Screen;
@@ -263,6 +265,20 @@ impl Entry {
         match self.reach {
             Reach::Always | Reach::Screen => true,
             Reach::Panes(panes) => panes.contains(&pane),
+        }
+    }
+
+    /// Whether the two can't have the same key. A pane may have its own use for a key that means something else in the
+    /// others, but not for the runstop's.
+    pub fn clashes_with(&self, other: &Entry) -> bool {
+        if self.action == other.action {
+            return false;
+        }
+        match (self.reach, other.reach) {
+            _ if self.action == Action::Runstop || other.action == Action::Runstop => true,
+            (Reach::Panes(panes), Reach::Panes(others)) => panes.iter().any(|pane| others.contains(pane)),
+            (Reach::Panes(_), Reach::Screen) | (Reach::Screen, Reach::Panes(_)) => false,
+            _ => true,
         }
     }
 

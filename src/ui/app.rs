@@ -9,10 +9,13 @@ mod copying;
 mod draw;
 mod follow;
 mod guide;
+mod helping;
+mod hindrance;
 mod menu;
 mod moment;
 mod mouse;
 mod movement;
+mod palette;
 mod perform;
 mod reading;
 mod robots;
@@ -31,7 +34,9 @@ use std::sync::Arc;
 use crossterm::event::{KeyEvent, KeyEventKind};
 use ratatui::layout::Size;
 
+pub use helping::{Help, SearchLine};
 pub use movement::Move;
+pub use palette::{Offer, Palette};
 pub use reading::{Filter, LogRow, Reading, Shown};
 pub use scroll::top_for;
 pub use source::{TextLine, Written};
@@ -55,10 +60,10 @@ use super::scope::Arrangement;
 use super::settings::Settings;
 use super::tour::Tour;
 use super::tree;
-use super::view::{Choices, Path, ProblemKey, Renames, View};
+use super::view::{Choices, Origin, Path, Problem, ProblemKey, Renames, View};
 use crate::model::{MachineId, Program};
 use crate::runtime::command::Command;
-use crate::runtime::record::{Level, Log, Record, What};
+use crate::runtime::record::{Finding, Level, Log, Record, What};
 
 #[derive(Clone, Debug)]
 pub struct Options {
@@ -131,6 +136,8 @@ pub struct App {
     follow: Follow,
     beat: Beat,
     overlay: Overlay,
+    /// What was chosen by name, the last first.
+    recent: Vec<&'static str>,
     /// A sentence for the person, until the next key.
     message: Option<String>,
     /// The robot was stopped outside the engine, which may not have said so yet.
@@ -169,10 +176,7 @@ type DiagramKey = (u64, MachineId, Size);
 #[derive(Clone, Debug)]
 pub enum Overlay {
     Nothing,
-    /// From this line on.
-    Help {
-        top: usize,
-    },
+    Help(Help),
     Typing(Typing),
     /// What the held edit would do, from this line on.
     Held {
@@ -184,6 +188,7 @@ pub enum Overlay {
     },
     /// What can be done with what is selected.
     Menu(Menu),
+    Palette(Palette),
 }
 
 /// A command that had no effect comes back as an error from nowhere in the program.
@@ -215,6 +220,7 @@ impl App {
             follow: Follow::default(),
             beat: Beat::default(),
             overlay: Overlay::Nothing,
+            recent: Vec::new(),
             message: None,
             halted: false,
             nudged: None,
@@ -288,6 +294,14 @@ impl App {
         self.beat_now();
         self.dirty = true;
         effects
+    }
+
+    /// What is wrong with the person's configuration is told with what is wrong with the program.
+    pub fn found_in_config(&mut self, findings: &[Finding]) {
+        let now = self.view.t;
+        let problem = |finding| Problem::from_finding(finding, Origin::Config, now);
+        self.view.problems.extend(findings.iter().map(problem));
+        self.dirty = true;
     }
 
     /// A sentence for the person, shown until the next key: a file that went missing, an editor that couldn't start.
@@ -371,10 +385,11 @@ impl App {
         }
         match &mut self.overlay {
             Overlay::Typing(_) => self.type_on(event),
-            Overlay::Help { .. } => self.key_in_help(key),
+            Overlay::Help(_) => self.key_in_help(event),
             Overlay::Held { .. } => self.key_in_held(key),
             Overlay::Breakpoints { .. } => self.key_in_breakpoints(key),
             Overlay::Menu(_) => self.key_in_menu(key),
+            Overlay::Palette(_) => self.key_in_palette(event),
             Overlay::Nothing => match self.keys().action(key, self.focus) {
                 Some(action) => self.perform(action),
                 None => self.say(format!("{key} does nothing here; {} lists the keys", self.keys().name(Action::Help))),

@@ -32,6 +32,17 @@ const NAMED: [(&str, KeyCode); 15] = [
 const HELD: [(&str, KeyModifiers); 3] =
     [("Ctrl-", KeyModifiers::CONTROL), ("Alt-", KeyModifiers::ALT), ("Shift-", KeyModifiers::SHIFT)];
 
+/// With Ctrl these are other keys.
+const SENT_AS: [(char, &str); 3] = [('i', "Tab"), ('m', "Enter"), ('[', "Esc")];
+
+impl Key {
+    /// Whether it is no key to type with or to move in a line.
+    pub fn is_command(self) -> bool {
+        let held = self.modifiers.intersects(KeyModifiers::CONTROL | KeyModifiers::ALT);
+        matches!(self.code, KeyCode::F(_)) || (held && matches!(self.code, KeyCode::Char(_)))
+    }
+}
+
 /// Shift is part of a character and of the back tab, and counts as held only with other keys.
 impl From<KeyEvent> for Key {
     fn from(event: KeyEvent) -> Key {
@@ -63,29 +74,48 @@ impl FromStr for Key {
     type Err = String;
 
     /// # Errors
-    /// A sentence naming the text, where it isn't a key.
+    /// A sentence naming the text, where it isn't a key or none that a terminal sends.
     fn from_str(text: &str) -> Result<Key, String> {
         let mut rest = text;
         let mut modifiers = KeyModifiers::NONE;
         for (prefix, modifier) in HELD {
-            if let Some(after) = rest.strip_prefix(prefix).filter(|after| !after.is_empty()) {
+            if let Some(after) = after(rest, prefix) {
                 rest = after;
                 modifiers |= modifier;
             }
         }
-        let code = code(rest).ok_or_else(|| format!("'{text}' is not a key"))?;
-        Ok(Key::from(KeyEvent::new(code, modifiers)))
+        let mut code = code(rest).ok_or_else(|| format!("'{text}' is not a key"))?;
+        if let KeyCode::Char(c) = code
+            && modifiers.contains(KeyModifiers::SHIFT)
+        {
+            let mut upper = c.to_uppercase();
+            code = match (upper.next(), upper.next()) {
+                (Some(upper), None) if upper != c || c.is_uppercase() => KeyCode::Char(upper),
+                _ => return Err(format!("'{text}' is not a key: write what it types, as ! for Shift-1")),
+            };
+        }
+        let key = Key::from(KeyEvent::new(code, modifiers));
+        match SENT_AS.iter().find(|(c, _)| key.modifiers == KeyModifiers::CONTROL && key.code == KeyCode::Char(*c)) {
+            Some((_, other)) => Err(format!("terminals send {other} for {key}")),
+            None => Ok(key),
+        }
     }
 }
 
+/// Written in any case, unless nothing is behind it.
+fn after<'a>(text: &'a str, prefix: &str) -> Option<&'a str> {
+    let (head, rest) = text.split_at_checked(prefix.len())?;
+    (head.eq_ignore_ascii_case(prefix) && !rest.is_empty()).then_some(rest)
+}
+
 fn code(name: &str) -> Option<KeyCode> {
-    if let Some(&(_, code)) = NAMED.iter().find(|(known, _)| *known == name) {
+    if let Some(&(_, code)) = NAMED.iter().find(|(known, _)| known.eq_ignore_ascii_case(name)) {
         return Some(code);
     }
     let mut chars = name.chars();
     match (chars.next()?, chars.as_str()) {
-        (c, "") => Some(KeyCode::Char(c)),
-        ('F', number) => number.parse().ok().map(KeyCode::F),
+        (c, "") if !c.is_control() => Some(KeyCode::Char(c)),
+        ('F' | 'f', number) => number.parse().ok().filter(|number| (1..=24).contains(number)).map(KeyCode::F),
         _ => None,
     }
 }

@@ -24,6 +24,13 @@ impl Keymap {
         TABLE.iter().zip(self.keys.iter().map(Vec::as_slice))
     }
 
+    /// Gives a row of the table other keys.
+    pub fn set(&mut self, row: usize, keys: Vec<Key>) {
+        if let Some(place) = self.keys.get_mut(row) {
+            *place = keys;
+        }
+    }
+
     pub fn keys(&self, entry: &Entry) -> &[Key] {
         self.rows().find(|(row, _)| row.id == entry.id).map_or(&[], |(_, keys)| keys)
     }
@@ -86,7 +93,8 @@ impl Keymap {
     pub fn page(&self) -> String {
         let mut page = String::from(
             "# Keys\n\nMade from the table in `src/ui/action.rs`; a test keeps it so.\n\
-             Upper case means with Shift. `?` shows the same on the screen.\n",
+             Upper case means with Shift. `?` shows the same on the screen, `:` finds an action by its name.\n\
+             These are the defaults; [config.md](config.md) tells how to have others.\n",
         );
         for group in Group::ALL {
             let head = "| key | what it does | where | name |\n|---|---|---|---|\n";

@@ -17,12 +17,12 @@ use super::cadence::Cadence;
 use super::clipboard::{self, Between};
 use super::editor::{self, Launch, Manner};
 use super::input::{Hold, Input, Received};
-use super::pointer::{Hand, Mouse};
-use super::settings::{Settings, Surroundings};
+use super::pointer::Hand;
+use super::settings::Settings;
 use super::terminal::Screen;
-use super::theme::Theme;
 use super::tour::{Tour, folder};
 use super::view::Choices;
+use crate::runtime::record::Finding;
 use crate::runtime::{Command, Explain, Record};
 use crate::session::engine_thread::{End, News};
 use crate::session::headless::STUCK;
@@ -46,8 +46,9 @@ pub struct Guide {
 }
 
 /// Exit code 0: quit, terminated or hung up; 1: it couldn't begin or failed; 130: interrupted.
-pub fn run(setup: Setup, trace: Option<PathBuf>, mouse: Mouse, guide: Option<Guide>) -> ExitCode {
-    match live(setup, trace, mouse, guide) {
+/// `settings`: with what was found wrong with them.
+pub fn run(setup: Setup, settings: (Settings, Vec<Finding>), trace: Option<PathBuf>, guide: Option<Guide>) -> ExitCode {
+    match live(setup, settings, trace, guide) {
         Ok(code) => code,
         Err(why) => {
             let _ = writeln!(io::stderr(), "lrp: {why}");
@@ -56,7 +57,14 @@ pub fn run(setup: Setup, trace: Option<PathBuf>, mouse: Mouse, guide: Option<Gui
     }
 }
 
-fn live(setup: Setup, trace: Option<PathBuf>, mouse: Mouse, guide: Option<Guide>) -> Result<ExitCode, String> {
+fn live(
+    setup: Setup,
+    settings: (Settings, Vec<Finding>),
+    trace: Option<PathBuf>,
+    guide: Option<Guide>,
+) -> Result<ExitCode, String> {
+    let (settings, findings) = settings;
+    let mouse = settings.mouse;
     Screen::check().map_err(|error| error.to_string())?;
     if trace.as_deref() == Some(Path::new("-")) {
         return Err(
@@ -75,7 +83,7 @@ fn live(setup: Setup, trace: Option<PathBuf>, mouse: Mouse, guide: Option<Guide>
                 saves: setup.options.saves,
                 on_error: setup.options.on_error,
             },
-            settings: Settings { mouse, ..settings(&Surroundings::here()) },
+            settings,
             size,
         })
     };
@@ -84,10 +92,11 @@ fn live(setup: Setup, trace: Option<PathBuf>, mouse: Mouse, guide: Option<Guide>
     let _signals = Signals::watch(signals).map_err(|error| error.to_string())?;
     let size = crossterm::terminal::size().map(|(width, height)| Size { width, height }).unwrap_or_default();
     let (tour, tour_folder) = guide.map(|guide| (guide.tour, guide.folder)).unzip();
-    let app = match tour {
+    let mut app = match tour {
         Some(tour) => app(size).guided(tour),
         None => app(size),
     };
+    app.found_in_config(&findings);
     let session = Session::start(setup, send(&happened, Happened::News)).map_err(|why| why.to_string())?;
     let stop = session.commands().clone();
     let screen = Screen::enter(mouse, move || stop.halt()).map_err(|error| error.to_string())?;
@@ -135,12 +144,6 @@ fn live(setup: Setup, trace: Option<PathBuf>, mouse: Mouse, guide: Option<Guide>
         Some(why) => Err(why),
         None => Ok(code),
     }
-}
-
-/// As a person wants them here.
-pub fn settings(surroundings: &Surroundings) -> Settings {
-    let (theme, charset) = (Theme::of(surroundings.palette()), surroundings.charset());
-    Settings { theme, charset, ..Settings::default() }
 }
 
 /// Hands things of one kind on to the loop; when that has ended there is nobody to tell.

@@ -36,7 +36,7 @@ impl Surroundings {
 
     /// Dark, unless the terminal says otherwise: `COLORFGBG` ends with the number of the ground's colour.
     pub fn palette(&self) -> Palette {
-        if self.no_color.is_some() {
+        if self.no_color.is_some() || self.is_of_old() {
             return Palette::Mono;
         }
         let ground = self.colorfgbg.as_deref().and_then(|colours| colours.rsplit(';').next()?.parse().ok());
@@ -46,11 +46,16 @@ impl Surroundings {
         }
     }
 
+    /// vt100 and its kin have neither colours nor characters.
+    fn is_of_old(&self) -> bool {
+        self.term.as_deref().is_some_and(|term| term.starts_with("vt"))
+    }
+
     /// UTF-8 where the locale names it, but for the console of Linux, whose font has a few hundred characters.
     pub fn charset(&self) -> Charset {
         let codeset = self.locale.as_deref().unwrap_or("").to_lowercase();
         let speaks = codeset.contains("utf-8") || codeset.contains("utf8");
-        match speaks && self.term.as_deref() != Some("linux") {
+        match speaks && self.term.as_deref() != Some("linux") && !self.is_of_old() {
             true => Charset::Unicode,
             false => Charset::Ascii,
         }

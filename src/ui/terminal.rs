@@ -66,6 +66,11 @@ impl Screen {
         if !io::stdin().is_terminal() || !io::stdout().is_terminal() {
             return Err(io::Error::other("there is no terminal for the screen; `lrp run` works without one"));
         }
+        if std::env::var_os("TERM").is_some_and(|term| term == "dumb") {
+            return Err(io::Error::other(
+                "a terminal of the kind `dumb` can't show the screen; `lrp run` works without it, and if it is none, set TERM",
+            ));
+        }
         Ok(())
     }
 

@@ -16,6 +16,17 @@ pub enum Palette {
     Mono,
 }
 
+impl Palette {
+    pub fn named(name: &str) -> Option<Palette> {
+        match name {
+            "dark" => Some(Palette::Dark),
+            "light" => Some(Palette::Light),
+            "mono" => Some(Palette::Mono),
+            _ => None,
+        }
+    }
+}
+
 /// What a style means.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Role {
@@ -111,6 +122,50 @@ table! {
     Lua "lua" PLAIN Cyan Blue;
 }
 
+/// What a person may write for a style.
+const WEIGHTS: [(&str, Modifier); 5] =
+    [("plain", PLAIN), ("bold", HEAVY), ("dim", FAINT), ("underlined", Modifier::UNDERLINED), ("reversed", TURNED)];
+
+const COLOURS: [(&str, Color); 16] = [
+    ("black", Color::Black),
+    ("red", Color::Red),
+    ("green", Color::Green),
+    ("yellow", Color::Yellow),
+    ("blue", Color::Blue),
+    ("magenta", Color::Magenta),
+    ("cyan", Color::Cyan),
+    ("white", Color::Gray),
+    ("bright-black", Color::DarkGray),
+    ("bright-red", Color::LightRed),
+    ("bright-green", Color::LightGreen),
+    ("bright-yellow", Color::LightYellow),
+    ("bright-blue", Color::LightBlue),
+    ("bright-magenta", Color::LightMagenta),
+    ("bright-cyan", Color::LightCyan),
+    ("bright-white", Color::White),
+];
+
+pub const WORDS: &str = "a colour (black, red, green, yellow, blue, magenta, cyan, white, or bright- one of them), \
+                         and bold, dim, underlined, reversed or plain, as in \"bold red\"";
+
+/// `bold bright-red`: a colour and weights; without a colour that of the terminal.
+///
+/// # Errors
+/// A sentence naming the word that is neither.
+pub fn style(words: &str) -> Result<Style, String> {
+    let mut style = Style::new();
+    for word in words.split_whitespace() {
+        let colour = COLOURS.iter().find(|(name, _)| *name == word);
+        let weight = WEIGHTS.iter().find(|(name, _)| *name == word);
+        style = match (colour, weight) {
+            (Some((_, colour)), _) => style.fg(*colour),
+            (None, Some((_, weight))) => style.add_modifier(*weight),
+            (None, None) => return Err(format!("`{word}` is neither a colour nor a weight")),
+        };
+    }
+    Ok(style)
+}
+
 impl Meaning {
     fn style(&self, palette: Palette) -> Style {
         let colour = match palette {
@@ -118,7 +173,12 @@ impl Meaning {
             Palette::Light => self.light,
             Palette::Mono => None,
         };
-        Style { fg: colour, ..Style::new() }.add_modifier(self.weight)
+        let weight = match (palette, self.role) {
+            // In a drawing nothing else tells of it.
+            (Palette::Mono, Role::Warning) => Modifier::UNDERLINED,
+            _ => self.weight,
+        };
+        Style { fg: colour, ..Style::new() }.add_modifier(weight)
     }
 }
 
@@ -142,6 +202,12 @@ impl Theme {
     pub fn style(&self, role: Role) -> Style {
         let rows = TABLE.iter().zip(&self.styles);
         rows.into_iter().find(|(meaning, _)| meaning.role == role).map_or(Style::new(), |(_, style)| *style)
+    }
+
+    /// Gives what has this id another style.
+    pub fn set(&mut self, id: &str, style: Style) {
+        let rows = TABLE.iter().zip(&mut self.styles);
+        rows.filter(|(meaning, _)| meaning.id == id).for_each(|(_, place)| *place = style);
     }
 
     pub fn normal(&self) -> Style {

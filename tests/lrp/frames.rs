@@ -5,7 +5,8 @@ use std::path::PathBuf;
 
 use lrp::runtime::command::Command;
 use lrp::runtime::record::{BridgeState, Element, Health, Op, What};
-use lrp::ui::app::{App, Event, Options};
+use lrp::ui::action::TABLE;
+use lrp::ui::app::{App, Event, Options, Overlay};
 use lrp::ui::glyphs::Charset;
 use lrp::ui::key::Key;
 use lrp::ui::settings::Settings;
@@ -189,10 +190,34 @@ fn check_one(name: &str, story: &Story, keys: &str) {
 
 #[test]
 fn the_help() {
-    check_one("help_80x24", &Story::searching(), "?");
-    let mut app = screen(120, 40, &Story::searching());
-    press(&mut app, "?");
-    check("help_120x40", &app);
+    check_at(&[(80, 24), (120, 40), (40, 24)], "help", &Story::searching(), "?");
+    check_at(&[(40, 24)], "help_variables", &Story::searching(), "3 ?");
+    check_at(&[(80, 24), (40, 24)], "help_search", &Story::searching(), "? / b r e a k");
+}
+
+#[test]
+fn the_help_is_gone_through_and_searched() {
+    let mut app = screen(40, 24, &Story::searching());
+    press(&mut app, "3 ?");
+    let mut seen = frame(&app);
+    for _ in 0..12 {
+        press(&mut app, "PgDn");
+        seen += &frame(&app);
+    }
+    for entry in TABLE {
+        for word in entry.help.split(' ') {
+            assert!(seen.contains(word), "{}: {word}", entry.id);
+        }
+    }
+    press(&mut app, "/ v a l u e Enter");
+    assert!(matches!(app.overlay(), Overlay::Help(help) if help.search.value() == "value"));
+    assert!(frame(&app).contains("type a value"), "{}", frame(&app));
+    press(&mut app, "/ Esc");
+    assert!(matches!(app.overlay(), Overlay::Help(help) if help.search.value().is_empty()));
+    press(&mut app, "/ x q x q");
+    assert!(frame(&app).contains("No action has this"));
+    press(&mut app, "Esc Esc");
+    assert!(matches!(app.overlay(), Overlay::Nothing));
 }
 
 #[test]

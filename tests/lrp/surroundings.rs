@@ -18,6 +18,8 @@ fn the_ground_is_dark_unless_the_terminal_says_otherwise() {
     assert_eq!(palette("", "7;8"), Palette::Dark);
     assert_eq!(palette("", "15;default"), Palette::Dark);
     assert_eq!(palette("1", "0;15"), Palette::Mono);
+    let old = Surroundings { term: Some("vt220".into()), ..Surroundings::default() };
+    assert_eq!(old.palette(), Palette::Mono);
 }
 
 #[test]
@@ -29,6 +31,7 @@ fn characters_follow_the_locale() {
     for locale in ["en_GB.UTF-8", "C.utf8", "de_DE.utf-8@euro"] {
         assert_eq!(charset(Some(locale), "xterm"), Charset::Unicode, "{locale}");
         assert_eq!(charset(Some(locale), "linux"), Charset::Ascii, "{locale}");
+        assert_eq!(charset(Some(locale), "vt100"), Charset::Ascii, "{locale}");
     }
     for locale in [None, Some("C"), Some("POSIX"), Some("de_DE"), Some("de_DE.ISO-8859-1")] {
         assert_eq!(charset(locale, "xterm"), Charset::Ascii, "{locale:?}");

@@ -132,8 +132,9 @@ impl App {
     /// Whether a key does anything now: some only where there is something to do it with.
     pub fn offers(&self, action: Action) -> bool {
         match action {
-            Action::ApplyHeld | Action::DropHeld | Action::HeldEdit => self.view.held.is_some(),
-            Action::GiveBack => self.view.lost().next().is_some(),
+            Action::ApplyHeld | Action::DropHeld | Action::HeldEdit | Action::GiveBack => {
+                self.hindrance(action).is_none()
+            }
             Action::WriteBack => self.selected_variable().is_some_and(|path| self.unwritten_value(&path).is_some()),
             Action::Reset => self.value.as_ref().is_some_and(|path| self.view.by_hand.contains_key(path)),
             _ => true,

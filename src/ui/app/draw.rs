@@ -9,7 +9,7 @@ use crate::ui::action::Action;
 use crate::ui::format;
 use crate::ui::glyphs;
 use crate::ui::layout::{Layout, Pane};
-use crate::ui::panes::{self, breakpoints, footer, held, help, menu, news, status, strip};
+use crate::ui::panes::{self, breakpoints, footer, held, help, menu, news, palette, status, strip};
 use crate::ui::pen::Pen;
 
 impl App {
@@ -38,13 +38,17 @@ impl App {
         };
         status::draw(self, layout.status, buffer);
         let body = Rect { y: area.y + 1, height: area.height - 2, ..area };
-        match self.overlay {
-            Overlay::Help { top } => help::draw(self, top, body, buffer),
-            Overlay::Held { top } => held::draw(self, top, body, buffer),
-            Overlay::Breakpoints { at } => breakpoints::draw(self, at, body, buffer),
-            Overlay::Menu(ref menu) => {
+        match &self.overlay {
+            Overlay::Help(help) => help::draw(self, help, body, buffer),
+            Overlay::Held { top } => held::draw(self, *top, body, buffer),
+            Overlay::Breakpoints { at } => breakpoints::draw(self, *at, body, buffer),
+            Overlay::Menu(menu) => {
                 self.paint_panes(&layout, buffer);
                 menu::draw(self, menu, body, buffer);
+            }
+            Overlay::Palette(palette) => {
+                self.paint_panes(&layout, buffer);
+                palette::draw(self, palette, body, buffer);
             }
             Overlay::Nothing | Overlay::Typing(_) => {
                 self.paint_panes(&layout, buffer);

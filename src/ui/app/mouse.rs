@@ -47,7 +47,7 @@ impl App {
         }
         let body = body(layout);
         match &mut self.overlay {
-            Overlay::Typing(_) | Overlay::Held { .. } | Overlay::Help { .. } => Vec::new(),
+            Overlay::Typing(_) | Overlay::Held { .. } | Overlay::Help(_) => Vec::new(),
             Overlay::Breakpoints { at: row } => {
                 let there = panes::breakpoints::row_at(self.view.breakpoints.len(), *row, body, at);
                 there.into_iter().for_each(|there| *row = there);
@@ -55,6 +55,16 @@ impl App {
             }
             Overlay::Menu(menu) => match menu.row_at(at, body) {
                 Some(row) => self.choose_in_menu(row),
+                None => {
+                    self.overlay = Overlay::Nothing;
+                    Vec::new()
+                }
+            },
+            Overlay::Palette(palette) => match panes::palette::row_at(palette, body, at) {
+                Some(row) => {
+                    palette.at = row;
+                    self.take_offer()
+                }
                 None => {
                     self.overlay = Overlay::Nothing;
                     Vec::new()
@@ -147,7 +157,8 @@ impl App {
         let rows = if how == Move::Up { -(WHEEL as isize) } else { WHEEL as isize };
         match &mut self.overlay {
             Overlay::Typing(_) => (),
-            Overlay::Help { .. } => (0..WHEEL).for_each(|_| self.go_in_help(how)),
+            Overlay::Help(_) => (0..WHEEL).for_each(|_| self.go_in_help(how)),
+            Overlay::Palette(palette) => palette.go(how, 1),
             Overlay::Held { .. } => {
                 let length = panes::held::lines(self, self.options.size.width).len();
                 (0..WHEEL).for_each(|_| self.scroll_overlay(how, length));

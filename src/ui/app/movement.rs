@@ -1,9 +1,9 @@
 //! Moving the selection of the focused pane, and keeping it in sight.
 
-use super::{App, Overlay};
+use super::{App, Help, Overlay};
 use crate::ui::action::Action;
 use crate::ui::layout::{Extent, Figure, Layout, Pane, Wish};
-use crate::ui::panes::{detail, help};
+use crate::ui::panes::detail;
 use crate::ui::tree::{self, Element};
 use crate::ui::view::{Path, owner, within};
 
@@ -99,14 +99,10 @@ impl App {
         self.detail_scroll.rewind();
     }
 
-    pub(super) fn go_in_help(&mut self, how: Move) {
-        self.scroll_overlay(how, help::lines(self.keys(), self.options.size.width).len());
-    }
-
     /// Lines without a selection only scroll.
     pub(super) fn scroll_overlay(&mut self, how: Move, length: usize) {
         let page = usize::from(self.area().height.saturating_sub(3));
-        if let Overlay::Help { top } | Overlay::Held { top } = &mut self.overlay {
+        if let Overlay::Help(Help { top, .. }) | Overlay::Held { top } = &mut self.overlay {
             *top = how.from(Some(*top), length, page).unwrap_or(0).min(length.saturating_sub(page));
         }
     }

@@ -3,11 +3,10 @@
 use super::arranging::Resize;
 use super::movement::Move;
 use super::values::Nudge;
-use super::{App, Effect, LogRow, Overlay};
+use super::{App, Effect, Help, LogRow, Overlay};
 use crate::runtime::command::Command;
 use crate::syntax::Span;
 use crate::ui::action::Action;
-use crate::ui::key::Key;
 use crate::ui::layout::{Extent, Figure, Pane};
 use crate::ui::tree::{self, Element};
 use crate::ui::view::{Mode, Path};
@@ -18,6 +17,9 @@ const RATES: [f64; 13] = [0.1, 0.2, 0.5, 1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0,
 impl App {
     pub(super) fn perform(&mut self, action: Action) -> Vec<Effect> {
         self.noticed(action);
+        if let Some(why) = self.hindrance(action) {
+            return self.say(why);
+        }
         match action {
             Action::Runstop => return command(Command::Runstop),
             Action::Pause => return command(self.pause_or_run()),
@@ -41,7 +43,6 @@ impl App {
             Action::Tell => return self.tell(),
             Action::SwitchOnEdit => return self.switch_on_edit(),
             Action::SwitchSaves => return self.switch_saves(),
-            Action::HeldEdit => return self.show_held(),
             Action::ApplyHeld => return self.decide_held(Command::ApplyHeld),
             Action::DropHeld => return self.decide_held(Command::DropHeld),
             Action::GiveBack => return self.give_back(),
@@ -85,19 +86,10 @@ impl App {
             Action::Filter => self.reading.filter = self.reading.filter.next(),
             Action::OnlyMachine => self.read_only_machine(),
             Action::Back => self.back(),
+            Action::HeldEdit => self.overlay = Overlay::Held { top: 0 },
             Action::Breakpoints => self.overlay = Overlay::Breakpoints { at: 0 },
-            Action::Help => self.overlay = Overlay::Help { top: 0 },
-        }
-        Vec::new()
-    }
-
-    pub(super) fn key_in_help(&mut self, key: Key) -> Vec<Effect> {
-        match self.keys().action(key, Pane::World) {
-            Some(Action::Runstop) => return command(Command::Runstop),
-            other => match other.and_then(Move::of) {
-                Some(how) => self.go_in_help(how),
-                None => self.overlay = Overlay::Nothing,
-            },
+            Action::Palette => self.open_palette(),
+            Action::Help => self.overlay = Overlay::Help(Help::default()),
         }
         Vec::new()
     }
@@ -117,19 +109,13 @@ impl App {
         }
     }
 
-    fn send_to(&mut self, to: impl Fn(String) -> Command) -> Vec<Effect> {
-        match self.selected_element() {
-            Some((path, Element::State(_))) => command(to(path.to_string())),
-            Some((path, Element::Machine(_))) => self.say(format!("{path} is a machine; select one of its states")),
-            None => self.say("no state is selected"),
-        }
+    fn send_to(&self, to: impl Fn(String) -> Command) -> Vec<Effect> {
+        self.selected.iter().flat_map(|path| command(to(path.to_string()))).collect()
     }
 
-    fn put_at_start(&mut self) -> Vec<Effect> {
-        match &self.view.world {
-            Some(world) => command(Command::PutAtStart { bridge: world.bridge.to_string() }),
-            None => self.say("there is no simulated robot to put back"),
-        }
+    fn put_at_start(&self) -> Vec<Effect> {
+        let bridges = self.view.world.iter().map(|world| world.bridge.to_string());
+        bridges.flat_map(|bridge| command(Command::PutAtStart { bridge })).collect()
     }
 
     pub(super) fn selected_element(&self) -> Option<(Path, Element)> {

@@ -47,24 +47,9 @@ impl App {
         vec![Effect::Command(Command::Saves { mode })]
     }
 
-    pub(super) fn show_held(&mut self) -> Vec<Effect> {
-        if self.view.held.is_none() {
-            return self.say(self.nothing_held());
-        }
-        self.overlay = Overlay::Held { top: 0 };
-        Vec::new()
-    }
-
-    fn nothing_held(&self) -> String {
-        format!("no edit is held; {} holds the next saves", self.keys().name(Action::SwitchSaves))
-    }
-
     pub(super) fn decide_held(&mut self, command: Command) -> Vec<Effect> {
         if matches!(self.overlay, Overlay::Held { .. }) {
             self.overlay = Overlay::Nothing;
-        }
-        if self.view.held.is_none() {
-            return self.say(self.nothing_held());
         }
         vec![Effect::Command(command)]
     }
@@ -92,9 +77,6 @@ impl App {
     /// Sets the values again that initial values replaced.
     pub(super) fn give_back(&mut self) -> Vec<Effect> {
         let lost: Vec<(String, String)> = self.view.lost().map(|(path, value)| (path.to_string(), value)).collect();
-        if lost.is_empty() {
-            return self.say("no value set by hand was lost");
-        }
         let told: Vec<String> = lost.iter().map(|(var, value)| format!("{} {value}", name(var))).collect();
         self.say(format!("set again: {}", format::fit(&told.join(", "), 60)));
         lost.into_iter().map(|(var, value)| Effect::Command(Command::Set { var, value })).collect()

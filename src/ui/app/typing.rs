@@ -4,7 +4,6 @@ use crossterm::event::{Event as TerminalEvent, KeyCode, KeyEvent, KeyModifiers};
 use tui_input::Input;
 use tui_input::backend::crossterm::EventHandler;
 
-use super::values::NOTHING_SELECTED;
 use super::{App, Effect, Overlay};
 use crate::runtime::command::{BreakAt, Breaking, Command};
 use crate::ui::format;
@@ -57,7 +56,7 @@ impl Goal {
 
 impl App {
     pub(super) fn begin_typing(&mut self) -> Vec<Effect> {
-        let Some(var) = self.selected_variable() else { return self.say(NOTHING_SELECTED) };
+        let Some(var) = self.selected_variable() else { return Vec::new() };
         // What can't be set is said, and letters typed all the same are no commands.
         self.message = self.refusal(&var);
         let value = self.view.variables.get(&var).and_then(|variable| variable.value.as_ref());

@@ -4,10 +4,9 @@ use serde_json::{Number, Value};
 
 use super::{App, Effect};
 use crate::runtime::command::Command;
+use crate::ui::action::Action;
 use crate::ui::format;
 use crate::ui::scope::Row;
-
-pub(super) const NOTHING_SELECTED: &str = "no variable is selected; Down selects the first";
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Nudge {
@@ -29,7 +28,7 @@ impl App {
     }
 
     pub(super) fn nudge(&mut self, nudge: Nudge) -> Vec<Effect> {
-        let Some(path) = self.value.clone() else { return self.say(NOTHING_SELECTED) };
+        let Some(path) = self.value.clone() else { return Vec::new() };
         let listing = self.values();
         if let Some(row) = listing.row(&path).filter(|row| matches!(row, Row::Item { .. }) || self.opens(row)) {
             return self.open_or_close(row, nudge);
@@ -42,7 +41,9 @@ impl App {
         let Some(value) = on_its_way.or(variable) else { return Vec::new() };
         let next = match nudged(value, nudge) {
             Ok(next) => next,
-            Err(why) => return self.say(format!("{path} {why}; e types a value")),
+            Err(why) => {
+                return self.say(format!("{path} {why}; {} types a value", self.keys().name(Action::EditValue)));
+            }
         };
         let Some(value) = format::source(&next) else { return Vec::new() };
         self.nudged = Some((path.clone(), next));
@@ -63,7 +64,8 @@ impl App {
             (false, _) if self.opens(row) && self.arrangement.open.remove(&path) => (),
             (false, Row::Item { .. }) => self.value = path.rsplit_once('.').map(|(outer, _)| outer.into()),
             (true, Row::Item { root, .. }) => {
-                return self.say(format!("{path} is part of a table; e at {root} types the whole of it"));
+                let key = self.keys().name(Action::EditValue);
+                return self.say(format!("{path} is part of a table; {key} at {root} types the whole of it"));
             }
             _ => return self.refusal(&path).map_or_else(Vec::new, |refusal| self.say(refusal)),
         }
@@ -71,16 +73,13 @@ impl App {
     }
 
     pub(super) fn reset(&mut self) -> Vec<Effect> {
-        let Some(path) = self.selected_variable() else { return self.say(NOTHING_SELECTED) };
-        if let Some(refusal) = self.refusal(&path) {
-            return self.say(refusal);
-        }
+        let Some(path) = self.selected_variable() else { return Vec::new() };
         self.nudged = None;
         vec![Effect::Command(Command::Reset { var: path.to_string() })]
     }
 
     pub(super) fn pin(&mut self) -> Vec<Effect> {
-        let Some(path) = self.selected_variable() else { return self.say(NOTHING_SELECTED) };
+        let Some(path) = self.selected_variable() else { return Vec::new() };
         let pinned = &mut self.arrangement.pinned;
         match pinned.iter().position(|pinned| *pinned == path) {
             Some(at) => _ = pinned.remove(at),

@@ -2,7 +2,6 @@
 
 use serde_json::Value;
 
-use super::values::NOTHING_SELECTED;
 use super::{App, Effect};
 use crate::model::initial::{Unwritable, with_initials};
 use crate::model::{Program, VarId};
@@ -33,7 +32,7 @@ impl App {
     }
 
     pub(super) fn write_selected(&mut self) -> Vec<Effect> {
-        let Some(path) = self.selected_variable() else { return self.say(NOTHING_SELECTED) };
+        let Some(path) = self.selected_variable() else { return Vec::new() };
         let Some(var) = self.program().and_then(|program| program.var(&path)) else {
             return self.say(format!("{path} comes from the robot and has no place in the text"));
         };
@@ -49,10 +48,7 @@ impl App {
         let Some(program) = self.program() else { return Vec::new() };
         let all = self.unwritten().filter_map(|(path, value)| Some((program.var(path)?, value.clone())));
         let all: Vec<(VarId, Value)> = all.collect();
-        match all.is_empty() {
-            true => self.say("every value set by hand is in the text"),
-            false => self.write(all),
-        }
+        self.write(all)
     }
 
     fn write(&mut self, values: Vec<(VarId, Value)>) -> Vec<Effect> {

@@ -5,11 +5,12 @@ use std::ops::Range;
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
 use ratatui::style::Style;
+use tui_input::Input;
 use unicode_width::UnicodeWidthChar;
 
 use super::draw_words;
 use crate::ui::action::{Action, Entry};
-use crate::ui::app::{App, Goal, Overlay, Text, Typing};
+use crate::ui::app::{App, Goal, Help, Overlay, Palette, SearchLine, Text, Typing};
 use crate::ui::format;
 use crate::ui::glyphs;
 use crate::ui::key::Key;
@@ -36,29 +37,36 @@ pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Footer {
     if let Some((typing, message)) = typing.zip(app.message()) {
         draw_mistake(app, typing, message, area, buffer);
     }
+    let prompt = match app.overlay() {
+        Overlay::Typing(typing) => Some(Prompt::of_typing(typing)),
+        Overlay::Palette(palette) => Some(Prompt::of_palette(palette)),
+        Overlay::Help(help) if help.line == SearchLine::Open => Some(Prompt::of_help(help)),
+        _ => None,
+    };
     let mut footer = Footer::default();
     let mut pen = Pen::new(buffer, area, 0);
     pen.put_right(" ", theme.normal());
     let (keys, end) = (app.keys(), pen.end());
-    let stop = if typing.is_some() { keys.name_always(Action::Runstop) } else { keys.name(Action::Runstop) };
+    let stop = if prompt.is_some() { keys.name_always(Action::Runstop) } else { keys.name(Action::Runstop) };
     pen.put_right(" STOP", theme.stop()).put_right(&stop, theme.stop());
     footer.actions.push((pen.end()..end, Action::Runstop));
     pen.put_right("  ", theme.normal());
     pen.put(" ", theme.normal());
-    match (typing, app.message()) {
-        (Some(typing), _) => footer.cursor = Some(draw_typing(app, typing, pen, area)),
+    match (prompt, app.message()) {
+        (Some(prompt), _) => footer.cursor = Some(draw_prompt(app, &prompt, pen, area)),
         (None, Some(message)) => _ = pen.put(message, theme.bold()),
         (None, None) => match app.overlay() {
-            Overlay::Help { .. } => draw_given(app, &[(Action::Back, "back")], &mut pen, &mut footer),
+            Overlay::Help(_) => draw_given(app, HELP, &mut pen, &mut footer),
             Overlay::Held { .. } => draw_given(app, HELD, &mut pen, &mut footer),
             Overlay::Breakpoints { .. } => draw_given(app, BREAKPOINTS, &mut pen, &mut footer),
             Overlay::Menu(_) => draw_given(app, MENU, &mut pen, &mut footer),
-            Overlay::Nothing | Overlay::Typing(_) => draw_keys(app, &mut pen, &mut footer),
+            Overlay::Nothing | Overlay::Typing(_) | Overlay::Palette(_) => draw_keys(app, &mut pen, &mut footer),
         },
     }
     footer
 }
 
+const HELP: &[(Action, &str)] = &[(Action::Back, "back"), (Action::Search, "find")];
 const HELD: &[(Action, &str)] = &[
     (Action::Back, "back"),
     (Action::ApplyHeld, "apply"),
@@ -78,36 +86,61 @@ fn draw_given(app: &App, keys: &[(Action, &str)], pen: &mut Pen, footer: &mut Fo
     }
 }
 
-fn draw_typing(app: &App, typing: &Typing, mut pen: Pen, area: Rect) -> Position {
-    let theme = app.theme();
-    let (before, sign) = match &typing.goal {
-        Goal::Value(var) => (var.to_string(), " = "),
-        Goal::Filter(Pane::Log) => ("lines with".into(), " "),
-        Goal::Filter(Pane::Bridge) => ("seen there, called".into(), " "),
-        Goal::Filter(_) => ("variables called".into(), " "),
-        Goal::Tell(robot) => (robot.to_string(), "."),
-        Goal::Setting(robot) => (format!("into (bridge {robot} ..)"), " "),
-        Goal::Condition(machine) if machine.is_empty() => ("pause when".into(), " "),
-        Goal::Condition(machine) => (format!("{}: pause when", name(machine)), " "),
-    };
-    if pen.room() >= 58 {
+/// A line to type in: what for, what is there, and how it ends.
+struct Prompt<'a> {
+    before: String,
+    sign: &'static str,
+    input: &'a Input,
+    text: Text,
+    hint: &'static str,
+}
+
+impl<'a> Prompt<'a> {
+    fn of_typing(typing: &'a Typing) -> Prompt<'a> {
+        let (before, sign) = match &typing.goal {
+            Goal::Value(var) => (var.to_string(), " = "),
+            Goal::Filter(Pane::Log) => ("lines with".into(), " "),
+            Goal::Filter(Pane::Bridge) => ("seen there, called".into(), " "),
+            Goal::Filter(_) => ("variables called".into(), " "),
+            Goal::Tell(robot) => (robot.to_string(), "."),
+            Goal::Setting(robot) => (format!("into (bridge {robot} ..)"), " "),
+            Goal::Condition(machine) if machine.is_empty() => ("pause when".into(), " "),
+            Goal::Condition(machine) => (format!("{}: pause when", name(machine)), " "),
+        };
         let hint = match typing.goal {
             Goal::Filter(_) => "Enter keeps  Esc shows all",
             Goal::Tell(_) => "Enter sends  Esc leaves",
             Goal::Setting(_) => "Enter writes it  Esc leaves",
             Goal::Value(_) | Goal::Condition(_) => "Enter sets  Esc leaves",
         };
-        pen.put_right(hint, theme.dim()).put_right("  ", theme.dim());
+        Prompt { before, sign, input: &typing.input, text: typing.text, hint }
     }
-    pen.put(&format::fit(&before, pen.room() / 2), theme.bold()).put(sign, theme.dim());
+
+    fn of_help(help: &'a Help) -> Prompt<'a> {
+        let hint = "Enter keeps  Esc shows all";
+        Prompt { before: "keys for".into(), sign: " ", input: &help.search, text: Text::Typed, hint }
+    }
+
+    fn of_palette(palette: &'a Palette) -> Prompt<'a> {
+        let hint = "Enter does it  Esc leaves";
+        Prompt { before: String::new(), sign: ":", input: &palette.input, text: Text::Typed, hint }
+    }
+}
+
+fn draw_prompt(app: &App, prompt: &Prompt, mut pen: Pen, area: Rect) -> Position {
+    let theme = app.theme();
+    if pen.room() >= 58 {
+        pen.put_right(prompt.hint, theme.dim()).put_right("  ", theme.dim());
+    }
+    pen.put(&format::fit(&prompt.before, pen.room() / 2), theme.bold()).put(prompt.sign, theme.dim());
     let (start, room) = (pen.at(), pen.room().saturating_sub(1));
-    let scroll = typing.input.visual_scroll(usize::from(room));
-    let style = match typing.text {
+    let scroll = prompt.input.visual_scroll(usize::from(room));
+    let style = match prompt.text {
         Text::Present => theme.selected(),
         Text::Typed => theme.normal(),
     };
-    pen.put(&after_columns(typing.input.value(), scroll), style);
-    let cursor = typing.input.visual_cursor().saturating_sub(scroll) as u16;
+    pen.put(&after_columns(prompt.input.value(), scroll), style);
+    let cursor = prompt.input.visual_cursor().saturating_sub(scroll) as u16;
     Position::new(start.saturating_add(cursor).min(area.right().saturating_sub(1)), area.y)
 }
 

@@ -12,6 +12,7 @@ pub mod log;
 pub mod machines;
 pub mod menu;
 pub mod news;
+pub mod palette;
 pub mod sheet;
 pub mod source;
 pub mod status;

@@ -53,6 +53,8 @@ pub enum Origin {
     Check,
     /// A text that wasn't taken over; the next text replaces it.
     Rejected,
+    /// The person's configuration, which is read once.
+    Config,
 }
 
 impl ProblemKey {

@@ -32,8 +32,9 @@ impl View {
         if load.restarted {
             self.begin_again();
         }
-        self.problems =
-            load.findings.iter().map(|finding| Problem::from_finding(finding, Origin::Check, self.t)).collect();
+        self.problems.retain(|problem| problem.origin == Origin::Config);
+        let found = load.findings.iter().map(|finding| Problem::from_finding(finding, Origin::Check, self.t));
+        self.problems.splice(0..0, found);
     }
 
     /// Machines inside those that start again or end are gone; what they do next has records of its own.

@@ -14,10 +14,10 @@ use super::{Choice, Options, Welcome};
 use crate::session::behaviours::{self, BOUNDS, Found};
 use crate::session::first_program;
 use crate::session::signals::{Signal, Signals};
+use crate::ui::config;
 use crate::ui::input::{Input, Received};
-use crate::ui::live::{send, settings};
+use crate::ui::live::send;
 use crate::ui::pointer::Mouse;
-use crate::ui::settings::Surroundings;
 use crate::ui::terminal::Screen;
 
 /// What a person wants.
@@ -39,7 +39,7 @@ enum Happened {
 pub fn ask(tour: Option<String>) -> io::Result<Wanted> {
     Screen::check()?;
     let size = crossterm::terminal::size().map(|(width, height)| Size { width, height }).unwrap_or_default();
-    let settings = settings(&Surroundings::here());
+    let settings = config::usual();
     let mut welcome = Welcome::new(Options { folder: here(), tour, settings, size });
     let (happened, inbox) = channel();
     let _signals = Signals::watch(send(&happened, Happened::Signal))?;
