@@ -210,15 +210,27 @@ pub struct GraphArgs {
     /// Columns at most; labels are shortened to fit
     #[arg(long, value_name = "N")]
     pub width: Option<u16>,
-    /// Rows at most; states are drawn with one row each where that helps
+    /// Rows at most, as far as that can be: where boxes don't fit, a table may
     #[arg(long, value_name = "N")]
     pub height: Option<u16>,
+    /// Boxes with lines, or a table with an arrow for each transition; what fits by default
+    #[arg(long, value_enum)]
+    pub form: Option<GraphForm>,
+    /// Only this state of the machine, with what leads into and out of it
+    #[arg(long, value_name = "STATE", conflicts_with = "form")]
+    pub around: Option<String>,
     /// Only ASCII characters
     #[arg(long, action = ArgAction::SetTrue)]
     pub ascii: bool,
     /// A drawing in characters, or a text for Graphviz or Mermaid
     #[arg(long, value_enum, default_value_t = GraphFormat::Text)]
     pub format: GraphFormat,
+}
+
+#[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub enum GraphForm {
+    Boxes,
+    Table,
 }
 
 #[derive(Clone, Copy, PartialEq, Eq, ValueEnum)]

@@ -6,6 +6,7 @@ mod check;
 mod config;
 mod explain;
 mod graph;
+mod ink;
 mod new;
 mod output;
 mod tour;

@@ -44,6 +44,12 @@ pub enum Action {
     Inspect,
     WhyNot,
     Follow,
+    NextBeside,
+    Nearness,
+    PanLeft,
+    PanRight,
+    PanUp,
+    PanDown,
     NextPane,
     PreviousPane,
     Focus(Pane),
@@ -121,6 +127,7 @@ const STATES: Reach = Reach::Panes(&[Pane::Machines, Pane::Graph]);
 /// Where a state can be selected.
 const PLACES: Reach = Reach::Panes(&[Pane::Machines, Pane::Graph, Pane::Source]);
 const SOURCE: Reach = Reach::Panes(&[Pane::Source]);
+const GRAPH: Reach = Reach::Panes(&[Pane::Graph]);
 const TREE: Reach = Reach::Panes(&[Pane::Machines]);
 const VALUES: Reach = Reach::Panes(&[Pane::Variables]);
 const LINES: Reach = Reach::Panes(&[Pane::Log, Pane::Source]);
@@ -189,6 +196,11 @@ table! {
     Action::ScrollLeft, "scroll-left", ["Left", "h"], "", "what is left of the text seen", Moving, SOURCE;
     Action::ScrollRight, "scroll-right", ["Right", "l"], "", "what is right of the text seen", Moving, SOURCE;
     Action::Follow, "follow", ["f"], "", "follow the innermost change, or hold still", Moving, Reach::Screen;
+    Action::NextBeside, "next-beside", ["."], "", "the next of the machines that run beside each other", Moving, STATES;
+    Action::PanLeft, "pan-left", ["Left", "h"], "", "move the drawing to see more on its left", Moving, GRAPH;
+    Action::PanRight, "pan-right", ["Right", "l"], "", "move the drawing to see more on its right", Moving, GRAPH;
+    Action::PanUp, "pan-up", ["Shift-Up"], "", "move the drawing to see more above", Moving, GRAPH;
+    Action::PanDown, "pan-down", ["Shift-Down"], "", "move the drawing to see more below", Moving, GRAPH;
 
     Action::NextPane, "next-pane", ["Tab"], "", "the next pane", Looking, Reach::Screen;
     Action::PreviousPane, "previous-pane", ["Shift-Tab"], "", "the pane before", Looking, Reach::Screen;
@@ -204,6 +216,7 @@ table! {
     Action::ToggleSource, "toggle-source", ["c"], "source", "the program's text for the drawing, and back", Looking, Reach::Screen;
     Action::ToggleRobots, "toggle-robots", ["R"], "", "the robots for the drawing, and back", Looking, Reach::Screen;
     Action::Inspect, "inspect", ["i"], "inspect", "all about what is selected, and back", Looking, Reach::Screen;
+    Action::Nearness, "nearness", ["d"], "", "the drawing: as it fits, boxes, a table, around the state", Looking, Reach::Screen;
     Action::Zoom, "zoom", ["z"], "", "the focused pane alone, and back", Looking, Reach::Screen;
     Action::Menu, "menu", ["a"], "menu", "what can be done with what is selected", Looking, Reach::Screen;
     Action::Narrower, "narrower", ["[", "Alt-Left"], "", "the focused pane narrower", Looking, Reach::Screen;

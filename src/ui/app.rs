@@ -11,6 +11,7 @@ mod follow;
 mod guide;
 mod helping;
 mod hindrance;
+mod looking;
 mod menu;
 mod moment;
 mod mouse;
@@ -27,7 +28,7 @@ mod values;
 mod writing;
 
 use std::cell::RefCell;
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::{BTreeMap, BTreeSet, VecDeque};
 use std::rc::Rc;
 use std::sync::Arc;
 
@@ -35,6 +36,7 @@ use crossterm::event::{KeyEvent, KeyEventKind};
 use ratatui::layout::Size;
 
 pub use helping::{Help, SearchLine};
+pub use looking::Nearness;
 pub use movement::Move;
 pub use palette::{Offer, Palette};
 pub use reading::{Filter, LogRow, Reading, Shown};
@@ -45,6 +47,7 @@ pub use writing::WriteBack;
 
 use self::beat::Beat;
 use self::follow::Follow;
+use self::looking::Looking;
 use self::moment::Moment;
 use self::scroll::Scroll;
 use self::source::Cursor;
@@ -54,7 +57,7 @@ use super::ink::Inked;
 use super::key::Key;
 use super::layout::{Chosen, Divide, Extent, Figure, Pane};
 use super::menu::Menu;
-use super::panes::diagram::Diagram;
+use super::panes::diagram::{Diagram, View as Closeness};
 use super::pointer::{Mouse, Pointer};
 use super::scope::Arrangement;
 use super::settings::Settings;
@@ -166,12 +169,14 @@ pub struct App {
     tour: Option<Tour>,
     hints: Hints,
     dirty: bool,
-    diagram: RefCell<Option<(DiagramKey, Rc<Diagram>)>>,
+    looking: Looking,
+    /// Those of the last frames.
+    diagrams: RefCell<VecDeque<(DiagramKey, Rc<Diagram>)>>,
     inked: RefCell<Option<(Arc<str>, Rc<Inked>)>>,
 }
 
-/// What a drawing depends on: which program, which machine, how much room.
-type DiagramKey = (u64, MachineId, Size);
+/// What a drawing depends on: which program, which machine, how near, how much room.
+type DiagramKey = (u64, MachineId, Closeness, Size);
 
 #[derive(Clone, Debug)]
 pub enum Overlay {
@@ -240,7 +245,8 @@ impl App {
             tour: None,
             hints: Hints::default(),
             dirty: true,
-            diagram: RefCell::new(None),
+            looking: Looking::default(),
+            diagrams: RefCell::default(),
             inked: RefCell::new(None),
         }
     }

@@ -44,17 +44,45 @@ pub fn graph(program: &Program, machine: MachineId) -> Graph {
 pub const EXIT: u32 = u32::MAX;
 
 fn node(program: &Program, state: StateId) -> Node {
-    let spawned = program[state].onentry.iter().filter_map(|entry| match entry {
-        Entry::Spawn(spawn) => spawn.target.map(|(machine, _)| machine),
-        Entry::Action(_) => None,
-    });
-    let names =
-        spawned.flat_map(|machine| program[machine].states.iter().map(|&state| program[state].name.to_string()));
+    let longest = |machine: MachineId| {
+        let names = program[machine].states.iter().map(|&state| &*program[state].name);
+        names.max_by_key(|name| name.chars().count()).unwrap_or("")
+    };
+    let longest: Vec<&str> = spawned(program, state).into_iter().map(longest).collect();
     Node {
         name: program[state].name.to_string(),
         kind: NodeKind::State,
-        inside: names.max_by_key(|name| name.chars().count()),
+        inside: (!longest.is_empty()).then(|| longest.join(BESIDE)),
     }
+}
+
+/// Between the names of states that are active beside each other inside a state.
+pub const BESIDE: &str = ", ";
+
+/// The machines that a state spawns, each once.
+pub fn spawned(program: &Program, state: StateId) -> Vec<MachineId> {
+    let spawns = program[state].onentry.iter().filter_map(|entry| match entry {
+        Entry::Spawn(spawn) => spawn.target.map(|(machine, _)| machine),
+        Entry::Action(_) => None,
+    });
+    once(spawns)
+}
+
+/// The machines that are spawned where this one is, itself among them: they run beside each other.
+pub fn beside(program: &Program, machine: MachineId) -> Vec<MachineId> {
+    let tops = once(program.spawns.iter().filter_map(|spawn| spawn.target.map(|(machine, _)| machine)));
+    let states = (0..program.states.len() as u32).map(|state| spawned(program, StateId(state)));
+    let mut groups = std::iter::once(tops).chain(states);
+    groups.find(|group| group.contains(&machine)).unwrap_or_else(|| vec![machine])
+}
+
+fn once(machines: impl Iterator<Item = MachineId>) -> Vec<MachineId> {
+    machines.fold(Vec::new(), |mut known, machine| {
+        if !known.contains(&machine) {
+            known.push(machine);
+        }
+        known
+    })
 }
 
 fn kind(transition: &Transition) -> EdgeKind {
@@ -88,10 +116,20 @@ fn shortened(text: &str) -> String {
     }
 }
 
-/// A machine with the machines written in its states.
+/// A machine with the machines that are written in its states or spawned by them. Each is shown once.
 pub fn nested(program: &Program, machine: MachineId) -> Nested {
-    let states = program[machine].states.iter().enumerate();
-    let children = states
-        .flat_map(|(index, &state)| program[state].machines.iter().map(move |&inner| (index, nested(program, inner))));
-    Nested { name: program[machine].name.to_string(), graph: graph(program, machine), children: children.collect() }
+    nested_in(program, machine, &mut vec![machine])
+}
+
+fn nested_in(program: &Program, machine: MachineId, shown: &mut Vec<MachineId>) -> Nested {
+    let mut children = Vec::new();
+    for (index, &state) in program[machine].states.iter().enumerate() {
+        for inner in once(program[state].machines.iter().copied().chain(spawned(program, state))) {
+            if !shown.contains(&inner) {
+                shown.push(inner);
+                children.push((index, nested_in(program, inner, shown)));
+            }
+        }
+    }
+    Nested { name: program[machine].name.to_string(), graph: graph(program, machine), children }
 }

@@ -11,20 +11,27 @@ use std::hint::black_box;
 use std::time::Duration;
 
 use edits::{Moved, script};
-use lrp::ui::graph::{Drawing, Glyphs, Graph, Options, Part, Place, Rows, draw};
+use lrp::ui::graph::{Drawing, Form, Glyphs, Graph, Options, Part, Place, Rows, draw};
 use timing::{best, median, timed};
 
-const FREE: Options = Options { glyphs: Glyphs::Unicode, max_width: None, place: Place::Left, rows: Rows::Two };
+const FREE: Options = Options {
+    form: Form::Boxes,
+    glyphs: Glyphs::Unicode,
+    max_width: None,
+    max_height: None,
+    place: Place::Left,
+    rows: Rows::Two,
+};
 /// As the screen has it in a terminal of 80 columns.
 const SCREEN: Options = Options { max_width: Some(80), place: Place::Middle, ..FREE };
 const ROUNDS: usize = 101;
 
 fn main() {
     println!(
-        "| machine | states, edges | size | in 80x24 | in 48x20 | crossings | bends | length | moved by {} edits: states | edges | draw, ms | in 80 columns | redraw |",
+        "| machine | states, edges | size | in 80x24 | in 48x20 | table in 80x24 | in 200x60 | crossings | bends | length | moved by {} edits: states | edges | draw, ms | in 80 columns | redraw |",
         script(&machines::tick_tock()).len()
     );
-    println!("|---|---|---|---|---|---|---|---|---|---|---|---|---|");
+    println!("|---|---|---|---|---|---|---|---|---|---|---|---|---|---|---|");
     for (name, graph) in machines::fixed_cases().into_iter().chain(machines::large_cases()) {
         report(name, &graph);
     }
@@ -37,13 +44,15 @@ fn report(name: &str, graph: &Graph) {
     let length = (0..graph.edges.len()).map(|edge| drawing.edge_cells(edge).count()).sum::<usize>();
     let moved = script(graph).iter().map(|edit| Moved::by(edit, graph, &SCREEN)).fold(Moved::default(), Moved::plus);
     println!(
-        "| {name} | {}, {} | {}x{} | {} | {} | {} | {} | {length} | {} | {} | {} | {} | {} |",
+        "| {name} | {}, {} | {}x{} | {} | {} | {} | {} | {} | {} | {length} | {} | {} | {} | {} | {} |",
         graph.nodes.len(),
         graph.edges.len(),
         drawing.width,
         drawing.height,
-        within(graph, 80, 24),
-        within(graph, 48, 20),
+        within(graph, Form::Boxes, 80, 24),
+        within(graph, Form::Boxes, 48, 20),
+        within(graph, Form::Table, 80, 24),
+        within(graph, Form::Table, 200, 60),
         count(|part| matches!(part, Part::Crossing { .. })),
         bends.count(),
         moved.states,
@@ -55,8 +64,9 @@ fn report(name: &str, graph: &Graph) {
 }
 
 /// How a machine is shown in a terminal of this size: its rows and how many labels and names are shortened.
-fn within(graph: &Graph, width: u16, height: u16) -> String {
-    let narrow = |rows| draw(graph, &Options { max_width: Some(width), rows, ..SCREEN });
+fn within(graph: &Graph, form: Form, width: u16, height: u16) -> String {
+    let (max_width, max_height) = (Some(width), Some(height));
+    let narrow = |rows| draw(graph, &Options { form, max_width, max_height, rows, ..SCREEN });
     let two = narrow(Rows::Two);
     let drawing = if two.height > height { narrow(Rows::One) } else { two };
     if drawing.width > width {

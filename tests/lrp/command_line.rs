@@ -249,6 +249,13 @@ fn graphs_fit_where_they_are_asked_to() {
         assert!(width < 20 || narrow.contains("tlooking"), "{narrow}");
     }
     assert!(graph(&["--height", "14"]).lines().count() <= graph(&[]).lines().count());
+    assert!(graph(&["--height", "8"]).lines().count() <= 8);
+    assert!(graph(&["--form", "table"]).lines().count() < graph(&["--form", "boxes"]).lines().count());
+    let around = graph(&["--around", "bumpturn"]);
+    assert!(around.contains("3100ms") && around.contains("bumpback") && !around.contains("moving"), "{around}");
+    let said = lrp(root(), &["graph", "behaviors/line_follower.lrp", "--around", "bumptrun"]);
+    let why = "lrp: this machine has no state `bumptrun`; did you mean `bumpturn`?\n";
+    assert_eq!((said.code, &*said.err), (Some(1), why));
     assert!(graph(&["follower/looking/lookalgo"]).contains("lookleft"));
     assert!(graph(&["--format", "dot"]).starts_with("digraph"));
     assert!(graph(&["--format", "mermaid"]).starts_with("stateDiagram"));

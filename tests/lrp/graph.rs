@@ -5,16 +5,32 @@ mod random;
 
 use std::path::PathBuf;
 
-use lrp::ui::graph::{Drawing, Edge, EdgeKind, Glyphs, Graph, Nested, Options, Part, Place, Rows, dot, draw, mermaid};
+use lrp::ui::graph::{
+    Drawing, Edge, EdgeKind, Form, Glyphs, Graph, Nested, NodeKind, Options, Part, Place, Point, Rows, dot, draw,
+    mermaid,
+};
 
 use crate::tracer::{Seen, columns, trace};
 use machines::{fixed_cases, full, graph, large_cases, line_follower, ring, search};
 
-const UNICODE: Options = Options { glyphs: Glyphs::Unicode, max_width: None, place: Place::Left, rows: Rows::Two };
+const UNICODE: Options = Options {
+    form: Form::Boxes,
+    glyphs: Glyphs::Unicode,
+    max_width: None,
+    max_height: None,
+    place: Place::Left,
+    rows: Rows::Two,
+};
 const ASCII: Options = Options { glyphs: Glyphs::Ascii, ..UNICODE };
 const MIDDLE: Options = Options { place: Place::Middle, ..UNICODE };
 
 const ONE_ROW: Options = Options { rows: Rows::One, ..UNICODE };
+const TABLE: Options = Options { form: Form::Table, ..UNICODE };
+const ASCII_TABLE: Options = Options { form: Form::Table, ..ASCII };
+/// In columns beside each other, where the width has room for them.
+const LOW_TABLE: Options = Options { max_height: Some(6), ..TABLE };
+const ALL: [Options; 7] =
+    [UNICODE, ASCII, ONE_ROW, TABLE, ASCII_TABLE, LOW_TABLE, Options { max_height: Some(6), ..ASCII_TABLE }];
 
 /// Compares a drawing with its file; `UPDATE=1` writes the file instead.
 fn same_as_file(name: &str, text: &str) {
@@ -31,6 +47,56 @@ fn drawings_look_like_their_files() {
     for (name, graph) in fixed_cases() {
         same_as_file(name, &draw(&graph, &UNICODE).text());
         same_as_file(&format!("{name}_ascii"), &draw(&graph, &ASCII).text());
+        same_as_file(&format!("{name}_table"), &printed(&graph, 80, &LOW_TABLE).expect(name));
+        same_as_file(&format!("{name}_table_ascii"), &printed(&graph, 44, &ASCII_TABLE).expect(name));
+        let (part, options) = around(&graph, 1, &UNICODE);
+        same_as_file(&format!("{name}_around"), &draw(&part, &options).text());
+        same_as_file(
+            &format!("{name}_around_ascii"),
+            &draw(&part, &Options { glyphs: Glyphs::Ascii, ..options }).text(),
+        );
+    }
+}
+
+/// What is around a node, and how to draw that.
+fn around(graph: &Graph, node: usize, options: &Options) -> (Graph, Options) {
+    let (part, nodes) = graph.around(node);
+    let center = nodes.iter().position(|&at| at == node).expect("it is in its own surroundings");
+    (part, Options { form: Form::Around(center), ..*options })
+}
+
+/// What a reader should find around the node in the middle: its name first, the others sorted.
+fn meant_around(graph: &Graph, node: usize) -> Seen {
+    let any = |at: usize| graph.nodes[at].kind == NodeKind::Any;
+    let concerns = |edge: &&Edge| edge.from == node || edge.to == node || any(edge.from);
+    let edges: Vec<Edge> = graph.edges.iter().filter(concerns).cloned().collect();
+    let all = meant(graph);
+    let meant = meant(&Graph { nodes: graph.nodes.clone(), edges });
+    let middle = &graph.nodes[node].name;
+    let is_end = |name: &String| meant.edges.iter().any(|(from, to, _)| from == name || to == name);
+    let mut states: Vec<_> = all.states.into_iter().filter(|(name, _)| name == middle || is_end(name)).collect();
+    states.sort_by_key(|(name, nested)| (name != middle, name.clone(), *nested));
+    Seen { states, edges: meant.edges }
+}
+
+/// A drawing too narrow for lines is a list, which has its states in their order.
+fn read_around(text: &str, graph: &Graph, node: usize) -> Result<(), String> {
+    let wanted = meant_around(graph, node);
+    let mut seen = trace(text)?;
+    seen.states.sort_by_key(|(name, nested)| (*name != graph.nodes[node].name, name.clone(), *nested));
+    if seen == wanted { Ok(()) } else { Err(format!("{seen:?}\ninstead of {wanted:?}")) }
+}
+
+#[test]
+fn surroundings_are_read_as_they_are() {
+    for (name, graph) in fixed_cases().into_iter().chain(large_cases()) {
+        for (node, options) in (0..graph.nodes.len()).flat_map(|node| [(node, UNICODE), (node, ASCII)]) {
+            let (part, options) = around(&graph, node, &options);
+            let text = draw(&part, &options).text();
+            assert_eq!(read_around(&text, &graph, node), Ok(()), "{name}\n{text}");
+            let first = trace(&text).map(|seen| seen.states[0].0.clone());
+            assert_eq!(first.as_ref(), Ok(&graph.nodes[node].name), "{name}\n{text}");
+        }
     }
 }
 
@@ -45,7 +111,7 @@ fn meant(graph: &Graph) -> Seen {
 #[test]
 fn fixed_machines_are_read_as_they_are() {
     for (name, graph) in fixed_cases().into_iter().chain(large_cases()) {
-        for options in [UNICODE, ASCII, ONE_ROW] {
+        for options in ALL {
             let text = draw(&graph, &options).text();
             assert_eq!(trace(&text), Ok(meant(&graph)), "{name}\n{text}");
         }
@@ -56,27 +122,42 @@ fn fixed_machines_are_read_as_they_are() {
 #[test]
 fn the_tracer_notices_each_wrong_glyph() {
     for (name, graph) in fixed_cases() {
-        let widths = [NARROWEST, 20, 24, u16::MAX];
-        for (options, width) in [UNICODE, ASCII].into_iter().flat_map(|options| widths.map(|width| (options, width))) {
+        let widths = [NARROWEST, 20, 24, 44, 80, u16::MAX];
+        for (options, width) in ALL.into_iter().flat_map(|options| widths.map(|width| (options, width))) {
             let text = printed(&graph, width, &options).expect(name);
-            for (at, glyph) in text.char_indices().filter(|(_, c)| !matches!(c, ' ' | '\n')) {
-                for other in wrong(glyph) {
-                    let mut changed = text.clone();
-                    changed.replace_range(at..at + glyph.len_utf8(), &other.to_string());
-                    assert_ne!(
-                        trace(&changed),
-                        Ok(meant(&graph)),
-                        "{name}: {other:?} for {glyph:?} goes unnoticed in\n{changed}"
-                    );
+            for changed in changes(&text) {
+                assert_ne!(trace(&changed), Ok(meant(&graph)), "{name}: unnoticed in\n{changed}");
+            }
+        }
+        for node in 0..graph.nodes.len() {
+            for (options, width) in
+                [UNICODE, ASCII].into_iter().flat_map(|options| widths.map(|width| (options, width)))
+            {
+                let (part, options) = around(&graph, node, &options);
+                let text = printed(&part, width, &options).expect(name);
+                for changed in changes(&text) {
+                    assert!(read_around(&changed, &graph, node).is_err(), "{name}: unnoticed in\n{changed}");
                 }
             }
         }
     }
 }
 
+/// The text with each glyph replaced in turn.
+fn changes(text: &str) -> impl Iterator<Item = String> {
+    let glyphs = text.char_indices().filter(|(_, c)| !matches!(c, ' ' | '\n'));
+    glyphs.flat_map(move |(at, glyph)| {
+        wrong(glyph).into_iter().map(move |other| {
+            let mut changed = text.to_owned();
+            changed.replace_range(at..at + glyph.len_utf8(), &other.to_string());
+            changed
+        })
+    })
+}
+
 /// What to put in a glyph's place: a blank, and what of its own sort means something else.
 fn wrong(glyph: char) -> Vec<char> {
-    let sorts = ["─│┼┌┐└┘", "►◄", "▲▼", "▷◁", "△▽", "-|+.'", "<>", "^v"];
+    let sorts = ["─│┼┌┐└┘", "►◄", "▲▼", "▷◁", "△▽", "⇡⇣", "-|+.'", "<>", "^v"];
     let sort = sorts.iter().find(|sort| sort.contains(glyph)).copied().unwrap_or("");
     std::iter::once(' ').chain(sort.chars().filter(|c| *c != glyph)).collect()
 }
@@ -109,10 +190,17 @@ const NARROWEST: u16 = 8;
 #[test]
 fn a_narrow_drawing_tells_everything() {
     for (name, graph) in fixed_cases() {
-        for options in [UNICODE, ASCII, ONE_ROW, MIDDLE] {
-            for width in NARROWEST..draw(&graph, &options).width + 8 {
+        for options in ALL.into_iter().chain([MIDDLE]) {
+            for width in NARROWEST..draw(&graph, &options).width.min(100) + 8 {
                 let text = printed(&graph, width, &options).expect(name);
                 assert_eq!(trace(&text), Ok(meant(&graph)), "{name} in {width} columns\n{text}");
+            }
+        }
+        for node in 0..graph.nodes.len() {
+            for width in NARROWEST..80 {
+                let (part, options) = around(&graph, node, &UNICODE);
+                let text = printed(&part, width, &options).expect(name);
+                assert_eq!(read_around(&text, &graph, node), Ok(()), "{name} in {width} columns\n{text}");
             }
         }
     }
@@ -169,6 +257,26 @@ fn cells_know_their_part() {
             assert_eq!(with(Part::Head(i)).chars().count(), 1, "{name}");
         }
         assert_eq!(with(Part::Blank).trim(), "", "{name}");
+    }
+}
+
+/// Without colours too: wildcards by their source, the others by what their lines are made of.
+#[test]
+fn the_kinds_of_edges_are_told_apart() {
+    for (name, graph) in fixed_cases().into_iter().chain(large_cases()) {
+        for form in [Form::Boxes, Form::Table] {
+            let drawing = draw(&graph, &Options { form, ..UNICODE });
+            for (i, edge) in graph.edges.iter().enumerate() {
+                let is_own = |at: &Point| matches!(drawing.cell(at.x, at.y).part, Part::Line(_) | Part::Head(_));
+                let glyphs = drawing.edge_cells(i).filter(is_own).map(|at| drawing.cell(at.x, at.y).glyph);
+                let glyphs: String = glyphs.collect();
+                let has = |any: &str| glyphs.contains(|c| any.contains(c));
+                let told = [(EdgeKind::Eps, has("◁▷△▽")), (EdgeKind::Ontime, has("╌╎⇡⇣")), (EdgeKind::Exit, has("○"))];
+                for (kind, told) in told {
+                    assert_eq!(edge.kind == kind, told, "{name}: {kind:?} in {glyphs:?}");
+                }
+            }
+        }
     }
 }
 

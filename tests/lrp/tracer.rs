@@ -1,18 +1,21 @@
 //! Reads a printed drawing of a state machine as a person would: finds the boxes and walks each line back from its
 //! arrow head. Knows nothing of how the drawing was made; it sees the text alone, and refuses what could be read in two ways.
 
+mod arrows;
 mod legend;
 mod list;
 mod page;
+mod star;
+mod table;
 
 use std::collections::BTreeMap;
 
 use legend::Legend;
 pub use page::columns;
-use page::{At, Column, Page};
+use page::{At, Column, Page, Script};
 
 /// What a drawing says.
-#[derive(Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Seen {
     /// From top to bottom, with whether it is marked as having a nested machine.
     pub states: Vec<(String, bool)>,
@@ -24,12 +27,32 @@ pub struct Seen {
 pub fn trace(text: &str) -> Result<Seen, String> {
     let (lines, legend) = Legend::split(text)?;
     let page = Page::new(&lines);
-    let seen = match (spine(&page), list::trace(&page)) {
-        (Ok(spine), Ok(list)) if spine != list => Err("a drawing and a list at once".to_owned()),
-        (Ok(seen), _) | (Err(_), Ok(seen)) => Ok(seen),
-        (Err(spine), Err(list)) => Err(format!("{spine}; read as a list: {list}")),
-    };
-    legend.applied(seen?)
+    let readings = [spine(&page), table::trace(&page), star::trace(&page), list::trace(&page)];
+    let mut seen: Vec<&Seen> = readings.iter().flatten().collect();
+    seen.dedup();
+    match seen[..] {
+        [seen] => legend.applied(seen.clone()),
+        [] => Err(readings.into_iter().filter_map(Result::err).collect::<Vec<_>>().join("; or else: ")),
+        _ => Err(format!("may be read in several ways: {seen:?}")),
+    }
+}
+
+/// A state from what its box says, with whether it is marked.
+fn named(text: &str, script: &Script) -> (String, bool) {
+    let bare = text.strip_suffix(script.nested);
+    (bare.unwrap_or(text).to_owned(), bare.is_some())
+}
+
+/// Where edges end at a name, each state has a name of its own and each edge ends at one.
+fn known_targets(seen: Seen) -> Result<Seen, String> {
+    let named = |name: &String| seen.states.iter().filter(move |(known, _)| known == name).count();
+    if let Some((name, _)) = seen.states.iter().find(|(name, _)| name.is_empty() || named(name) > 1) {
+        return Err(format!("a box with no name, or another's: {name:?}"));
+    }
+    match seen.edges.iter().find(|(_, to, _)| named(to) == 0) {
+        Some((_, to, _)) => Err(format!("no box is {to:?}")),
+        None => Ok(seen),
+    }
 }
 
 fn spine(page: &Page) -> Result<Seen, String> {

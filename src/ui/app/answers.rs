@@ -2,7 +2,7 @@
 
 use std::rc::Rc;
 
-use ratatui::layout::Rect;
+use ratatui::layout::{Rect, Size};
 
 use super::{App, Options, Overlay, Reading};
 use crate::model::{MachineId, Program};
@@ -10,11 +10,11 @@ use crate::runtime::Explain;
 use crate::ui::action::Action;
 use crate::ui::keymap::Keymap;
 use crate::ui::layout::{Layout, Pane, Simulated, Wish};
-use crate::ui::panes::diagram::Diagram;
+use crate::ui::panes::diagram::{Diagram, View as Closeness};
 use crate::ui::scope::{Arrangement, Listing, Row};
 use crate::ui::theme::Theme;
 use crate::ui::tree;
-use crate::ui::view::{Edit, Outcome, Path, View};
+use crate::ui::view::{Edit, Outcome, Path, View, within};
 
 impl App {
     pub fn view(&self) -> &View {
@@ -163,17 +163,30 @@ impl App {
         Wish { focus: self.focus, figure: self.figure, extent: self.extent, simulated, tree, chosen: &self.chosen }
     }
 
-    /// The drawing of a machine for an area: kept from the last frame where nothing changed.
-    pub fn diagram(&self, program: &Program, machine: MachineId, area: Rect) -> Rc<Diagram> {
-        let key = (self.view.loads, machine, area.as_size());
-        let mut kept = self.diagram.borrow_mut();
-        match &*kept {
-            Some((of, diagram)) if *of == key => diagram.clone(),
-            _ => {
-                let diagram = Rc::new(Diagram::new(program, machine, area.as_size(), self.options.settings.charset));
-                *kept = Some((key, diagram.clone()));
-                diagram
-            }
+    /// The path of a machine from outside in, also where it is spawned in another place than it is written.
+    pub fn breadcrumb(&self, program: &Program, machine: MachineId) -> String {
+        let path = &program[machine].path;
+        let top = path.split('/').next().unwrap_or(path);
+        let spawner = self.view.machines.get(top).and_then(|machine| machine.spawned_by.as_ref());
+        match spawner.filter(|spawner| !within(spawner, top)) {
+            Some(spawner) => format!("{spawner}/{path}"),
+            None => path.to_string(),
         }
     }
+
+    /// The drawing of a machine for a place: kept from the last frames where nothing changed.
+    pub fn diagram(&self, program: &Program, machine: MachineId, view: Closeness, size: Size) -> Rc<Diagram> {
+        let key = (self.view.loads, machine, view, size);
+        let mut kept = self.diagrams.borrow_mut();
+        if let Some((_, diagram)) = kept.iter().find(|(of, _)| *of == key) {
+            return diagram.clone();
+        }
+        let diagram = Rc::new(Diagram::new(program, machine, view, size, self.options.settings.charset));
+        kept.truncate(DIAGRAMS_KEPT - 1);
+        kept.push_front((key, diagram.clone()));
+        diagram
+    }
 }
+
+/// As many as a frame may need, with those for which there was no room in the end.
+const DIAGRAMS_KEPT: usize = 12;

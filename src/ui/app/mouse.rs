@@ -200,7 +200,8 @@ impl App {
                 let length = self.robot_rows().len();
                 self.robots_scroll.by(rows, length, page);
             }
-            Pane::Graph | Pane::World => (),
+            Pane::Graph => self.pan_by(0, rows),
+            Pane::World => (),
         }
     }
 

@@ -3,6 +3,7 @@
 use super::{App, Help, Overlay};
 use crate::ui::action::Action;
 use crate::ui::layout::{Extent, Figure, Layout, Pane, Wish};
+use crate::ui::machine_graph;
 use crate::ui::panes::detail;
 use crate::ui::tree::{self, Element};
 use crate::ui::view::{Path, owner, within};
@@ -125,7 +126,9 @@ impl App {
                 active.or_else(|| program[machine].states.first().map(|&state| program[state].path.clone()))
             }
             Some(Element::State(state)) => {
-                program[state].machines.first().map(|&machine| program[machine].path.clone())
+                let spawned = machine_graph::spawned(program, state).into_iter();
+                let mut inside = spawned.chain(program[state].machines.iter().copied());
+                inside.next().map(|machine| program[machine].path.clone())
             }
             None => None,
         };
@@ -137,8 +140,9 @@ impl App {
 
     pub(super) fn go_out(&mut self) {
         let Some(selected) = self.selected.clone() else { return self.nothing_selected() };
-        match owner(&selected) {
-            Some(outer) => self.select(outer.into()),
+        let spawner = self.view.machines.get(&selected).and_then(|machine| machine.spawned_by.clone());
+        match owner(&selected).map(Path::from).or(spawner) {
+            Some(outer) => self.select(outer),
             None => self.message = Some(format!("{selected} is outermost")),
         }
     }
@@ -256,5 +260,6 @@ impl App {
         if let Some(height) = self.seen_rows(Pane::Bridge) {
             self.settle_robots(height);
         }
+        self.settle_drawing();
     }
 }

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use super::drawing::{Cell, Drawing, Part};
+use super::drawing::{Cell, Drawing, Means, Part};
 use super::glyphs::Way;
 use super::layout::{Block, Layout, Point, Rect, Route, Words};
 use super::words;
@@ -10,18 +10,23 @@ use super::{EdgeKind, Glyphs, Graph};
 
 pub fn paint(graph: &Graph, glyphs: Glyphs, layout: Layout) -> Drawing {
     let cells = vec![Cell::BLANK; usize::from(layout.width) * usize::from(layout.height)];
+    let mut own: Vec<Option<&Block>> = vec![None; graph.nodes.len()];
+    for block in layout.blocks.iter().rev() {
+        own[block.node] = Some(block);
+    }
     let drawing = Drawing {
         width: layout.width,
         height: layout.height,
         cells,
         clusters: BTreeMap::new(),
-        boxes: layout.blocks.iter().map(|block| block.rect).collect(),
-        rooms: layout.blocks.iter().map(|block| block.inside).collect(),
-        shortened: layout.shortened,
+        boxes: own.iter().map(|block| block.map(|block| block.rect)).collect(),
+        rooms: own.iter().map(|block| block.and_then(|block| block.inside)).collect(),
+        shown: layout.shown,
+        means: Means::Lines,
     };
     let mut canvas = Canvas { glyphs, drawing };
-    for (node, block) in layout.blocks.iter().enumerate() {
-        canvas.block(node, block);
+    for block in &layout.blocks {
+        canvas.block(block);
     }
     for (edge, route) in layout.routes.iter().enumerate() {
         if let Some(route) = route {
@@ -37,7 +42,8 @@ struct Canvas {
 }
 
 impl Canvas {
-    fn block(&mut self, node: usize, block: &Block) {
+    fn block(&mut self, block: &Block) {
+        let node = block.node;
         let Rect { x, y, width, height } = block.rect;
         self.fill(block.rect, Part::Box(node));
         let (left, right) = self.glyphs.borders();
@@ -71,6 +77,9 @@ impl Canvas {
         if let Some(label) = &route.label {
             let padding = if route.points.len() > 1 { self.glyphs.label_padding() } else { 0 };
             self.write(label, padding, Part::Label(edge));
+        }
+        if let Some(target) = &route.target {
+            self.write(target, 0, Part::Target(edge));
         }
     }
 

@@ -2,10 +2,10 @@
 //! nothing of how it was laid out.
 
 use std::borrow::Cow;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::glyphs;
-use super::layout::{Point, Rect, Shortened};
+use super::layout::{Point, Rect, Shown};
 use super::words;
 
 /// What a cell belongs to. Numbers are indices into the nodes and edges of the graph.
@@ -27,6 +27,8 @@ pub enum Part {
     },
     Label(usize),
     Head(usize),
+    /// The name of the node that an edge leads to, where it ends without reaching its box.
+    Target(usize),
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -49,12 +51,32 @@ pub struct Drawing {
     pub(super) cells: Vec<Cell>,
     /// Clusters of more than one character, by the index of their cell.
     pub(super) clusters: BTreeMap<usize, String>,
-    pub(super) boxes: Vec<Rect>,
+    /// One for each node of the graph; `None` for what isn't shown.
+    pub(super) boxes: Vec<Option<Rect>>,
     pub(super) rooms: Vec<Option<Rect>>,
-    pub(super) shortened: Shortened,
+    pub(super) shown: Shown,
+    pub(super) means: Means,
+}
+
+/// What transitions are drawn with.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Means {
+    Lines,
+    /// There was no room for lines: each has a row of text, as many as it needs.
+    Words,
 }
 
 impl Drawing {
+    pub fn means(&self) -> Means {
+        self.means
+    }
+
+    /// Whether all texts are whole.
+    pub fn is_whole(&self) -> bool {
+        let Shown { names, labels } = &self.shown;
+        names.iter().chain(labels).all(|text| differing(text).is_none())
+    }
+
     /// All cells, row after row.
     pub fn cells(&self) -> &[Cell] {
         &self.cells
@@ -73,9 +95,9 @@ impl Drawing {
         }
     }
 
-    /// The box of a node, borders included; `None` if there is no such node.
+    /// The box of a node, borders included; `None` if it isn't shown.
     pub fn node_rect(&self, node: usize) -> Option<Rect> {
-        self.boxes.get(node).copied()
+        self.boxes.get(node).copied().flatten()
     }
 
     /// Where to write the name of the state that is active inside a node.
@@ -86,8 +108,16 @@ impl Drawing {
     /// The cell left of a node's name inside its box: free for a mark.
     pub fn beside_name(&self, node: usize) -> Option<Point> {
         let at = self.first(Part::Name(node))?;
-        let (frame, inside) = (self.boxes.get(node)?.x, self.cell(at.x.checked_sub(1)?, at.y).part);
+        let (frame, inside) = (self.node_rect(node)?.x, self.cell(at.x.checked_sub(1)?, at.y).part);
         Some(Point { x: at.x - u16::from(at.x > frame + 1 && inside == Part::Box(node)), ..at })
+    }
+
+    /// The cell right of a node's name and its mark inside its box: free for a mark of another kind.
+    pub fn after_name(&self, node: usize) -> Option<Point> {
+        let name = self.first(Part::Name(node))?;
+        let is_text = |x: &u16| matches!(self.cell(*x, name.y).part, Part::Name(n) | Part::Mark(n) if n == node);
+        let last = (name.x..self.width).take_while(|x| is_text(x) || is_text(&(x + 1))).last()?;
+        (self.cell(last + 1, name.y).part == Part::Box(node)).then_some(Point { x: last + 1, ..name })
     }
 
     /// The cell left of an edge's label where that is blank or its own line, else the label's first: for a mark.
@@ -104,11 +134,11 @@ impl Drawing {
         Some(super::layout::point(at % width, at / width))
     }
 
-    /// All cells that show an edge: line, crossings, label and head, in reading order.
+    /// All cells that show an edge: line, crossings, label, head and target, in reading order.
     pub fn edge_cells(&self, edge: usize) -> impl Iterator<Item = Point> + '_ {
         let width = usize::from(self.width).max(1);
         let cells = self.cells.iter().enumerate().filter(move |(_, cell)| match cell.part {
-            Part::Line(e) | Part::Label(e) | Part::Head(e) => e == edge,
+            Part::Line(e) | Part::Label(e) | Part::Head(e) | Part::Target(e) => e == edge,
             Part::Crossing { across, down } => across == edge || down == edge,
             _ => false,
         });
@@ -146,9 +176,9 @@ impl Drawing {
     /// What the shortened names and labels are in full, as lines of text of at most `width` columns where that can be;
     /// nothing where all are whole. A line too long goes on below, further in.
     pub fn legend(&self, width: u16) -> String {
-        let Shortened { names, labels } = &self.shortened;
         let mut out = String::new();
-        for (title, texts) in [("states", names), ("labels", labels)] {
+        for (title, texts) in [("states", &self.shown.names), ("labels", &self.shown.labels)] {
+            let texts = shortened(texts);
             if !texts.is_empty() {
                 out.push_str(title);
                 out.push('\n');
@@ -156,6 +186,16 @@ impl Drawing {
             texts.iter().for_each(|(shown, whole)| out.push_str(&entry(shown, whole, width.into())));
         }
         out
+    }
+
+    /// What is shown of a node's name and what it is in full, where that differs.
+    pub fn shortened_name(&self, node: usize) -> Option<(&str, &str)> {
+        differing(self.shown.names.get(node)?)
+    }
+
+    /// What is shown of an edge's label and what it is in full, where that differs.
+    pub fn shortened_label(&self, edge: usize) -> Option<(&str, &str)> {
+        differing(self.shown.labels.get(edge)?)
     }
 
     pub(super) fn index(&self, x: u16, y: u16) -> Option<usize> {
@@ -169,6 +209,16 @@ impl Drawing {
             (None, glyph) => Cow::Owned(glyph.to_string()),
         }
     }
+}
+
+fn differing((shown, whole): &(String, String)) -> Option<(&str, &str)> {
+    (shown != whole).then_some((shown, whole))
+}
+
+/// Each text that isn't whole once.
+fn shortened(texts: &[(String, String)]) -> Vec<(&str, &str)> {
+    let mut known = BTreeSet::new();
+    texts.iter().filter_map(differing).filter(|(shown, _)| known.insert(*shown)).collect()
 }
 
 /// `shown  whole`, broken where it is too long.

@@ -38,7 +38,11 @@ impl Glyphs {
     /// Whether in a name or label `c` would pass for a part of the drawing.
     pub fn draws(self, c: char) -> bool {
         self == Glyphs::Unicode
-            && matches!(c, '\u{2500}'..='\u{259f}' | '▸' | '○' | '►' | '◄' | '▲' | '▼' | '▷' | '◁' | '△' | '▽')
+            && matches!(
+                c,
+                '\u{2500}'
+                    ..='\u{259f}' | '▸' | '○' | '►' | '◄' | '▲' | '▼' | '▷' | '◁' | '△' | '▽' | '⇡' | '⇣'
+            )
     }
 
     pub fn ellipsis(self) -> char {
@@ -86,10 +90,11 @@ impl Glyphs {
         }
     }
 
-    /// An arrow head; hollow for eps.
+    /// An arrow head; hollow for eps. In a gap it stands for the whole line, so there it is dashed for ontime.
     pub fn head(self, kind: EdgeKind, way: Way) -> char {
         let [left, right, up, down] = match (self, kind) {
             (Glyphs::Unicode, EdgeKind::Eps) => ['◁', '▷', '△', '▽'],
+            (Glyphs::Unicode, EdgeKind::Ontime) => ['◄', '►', '⇡', '⇣'],
             (Glyphs::Unicode, _) => ['◄', '►', '▲', '▼'],
             (Glyphs::Ascii, _) => ['<', '>', '^', 'v'],
         };

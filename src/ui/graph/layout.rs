@@ -37,6 +37,7 @@ pub struct Words {
 
 /// A box and what is in it.
 pub struct Block {
+    pub node: usize,
     pub rect: Rect,
     pub name: Words,
     /// Where the mark of a nested machine stands.
@@ -51,6 +52,8 @@ pub struct Route {
     pub points: Vec<Point>,
     /// Stands on the route, or beside its only cell.
     pub label: Option<Words>,
+    /// The name of the state that it leads to, where it doesn't reach its box.
+    pub target: Option<Words>,
     /// Which way the head points.
     pub head: super::glyphs::Way,
 }
@@ -58,16 +61,16 @@ pub struct Route {
 pub struct Layout {
     pub width: u16,
     pub height: u16,
-    /// One for each node.
+    /// None for a node that isn't shown; where it has several, the first is its own.
     pub blocks: Vec<Block>,
-    /// One for each edge, `None` for an edge without ends.
+    /// One for each edge, `None` for an edge that isn't shown.
     pub routes: Vec<Option<Route>>,
-    pub shortened: Shortened,
+    pub shown: Shown,
 }
 
-/// The texts that aren't whole in a drawing: what is shown, and of what. No two texts show the same.
+/// What is shown of each node's name and each edge's label, and what it is in full. No two texts show the same.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
-pub struct Shortened {
+pub struct Shown {
     pub names: Vec<(String, String)>,
     pub labels: Vec<(String, String)>,
 }

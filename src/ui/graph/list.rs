@@ -3,9 +3,9 @@
 
 use std::collections::BTreeMap;
 
-use super::drawing::{Cell, Drawing, Part};
+use super::drawing::{Cell, Drawing, Means, Part};
 use super::glyphs::Way;
-use super::layout::{Rect, Shortened, cell, rect};
+use super::layout::{Rect, Shown, cell, rect};
 use super::{Edge, Glyphs, Graph, NodeKind, words};
 
 /// Columns before an edge, and before what goes on below.
@@ -62,7 +62,8 @@ impl List {
             (label, Part::Label(id)),
             (self.glyphs.line(edge.kind, Way::Right).to_string(), line),
             (self.glyphs.head(edge.kind, Way::Right).to_string(), Part::Head(id)),
-            (format!(" {target}"), Part::Label(id)),
+            (" ".to_owned(), Part::Blank),
+            (target.to_owned(), Part::Target(id)),
         ];
         self.row(EDGE, &pieces);
     }
@@ -105,8 +106,9 @@ impl List {
             cells,
             clusters,
             rooms: vec![None; self.boxes.len()],
-            boxes: self.boxes,
-            shortened: Shortened::default(),
+            boxes: self.boxes.into_iter().map(Some).collect(),
+            shown: Shown::default(),
+            means: Means::Words,
         }
     }
 }

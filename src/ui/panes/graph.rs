@@ -1,21 +1,22 @@
-//! The selected machine as a drawing. What happens only recolours it: no glyph moves.
+//! The selected machine as a drawing, with those that run beside it. What happens only recolours it: no glyph moves.
+
+mod brush;
+mod stage;
 
 use ratatui::buffer::Buffer;
 use ratatui::layout::{Position, Rect};
-use ratatui::style::{Modifier, Style};
 
-use super::breakpoints::mark;
-use super::diagram::Diagram;
+use self::brush::Brush;
+use self::stage::Stage;
 use super::{Target, Title, below_title, draw_nothing};
 use crate::model::{MachineId, Program, StateId, TransitionId};
-use crate::runtime::record::Setter;
 use crate::ui::app::App;
 use crate::ui::format;
 use crate::ui::glyphs;
-use crate::ui::graph::{Part, Point};
+use crate::ui::graph::Point;
 use crate::ui::layout::Pane;
-use crate::ui::machine_graph;
-use crate::ui::view::{Which, name};
+use crate::ui::panes::diagram::View;
+use crate::ui::pen::Pen;
 
 pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
     let Some((program, machine)) = app.program().zip(app.machine()) else {
@@ -26,12 +27,36 @@ pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
         draw_nothing(app, area, buffer, "This machine has no states yet.");
     }
     let area = canvas(area);
-    let diagram = app.diagram(program, machine, area);
-    let brush = Brush::new(app, program, machine, &diagram);
-    brush.draw(area, buffer);
-    let note = if app.follows() { format!("{} follow", glyphs::DOT) } else { String::new() };
+    let stage = Stage::of(app, program, machine, area);
+    for scene in &stage.scenes {
+        Brush::new(app, program, scene).draw(buffer);
+    }
+    draw_tabs(app, program, machine, &stage, buffer);
+    for (y, line) in (0..).zip(&stage.legend) {
+        Pen::new(buffer, stage.legend_area, y).put(line, app.theme().dim());
+    }
+    let notes = [how(&stage), if app.follows() { "follow" } else { "" }];
+    let notes = notes.into_iter().filter(|note| !note.is_empty()).map(|note| format!("{} {note}", glyphs::DOT));
+    let note = notes.collect::<Vec<_>>().join(" ");
     let room = area.width.saturating_sub(4 + format::width(&note));
-    Title::new(path_in(&program[machine].path, room), note)
+    Title::new(path_in(&app.breadcrumb(program, machine), room), note)
+}
+
+fn how(stage: &Stage) -> &'static str {
+    match stage.scenes.first().map(|scene| scene.view) {
+        Some(View::Table) => "table",
+        Some(View::Around(_)) => "around",
+        Some(View::Boxes) | None => "",
+    }
+}
+
+fn draw_tabs(app: &App, program: &Program, machine: MachineId, stage: &Stage, buffer: &mut Buffer) {
+    let theme = app.theme();
+    for tab in &stage.tabs {
+        let (name, active) = stage::said(app, program, tab.machine);
+        let style = if tab.machine == machine { theme.bold() } else { theme.dim() };
+        Pen::new(buffer, tab.area, 0).put(&name, style).put(&active, theme.active());
+    }
 }
 
 /// The part of the pane below its title in which the drawing may stand.
@@ -39,10 +64,16 @@ fn canvas(area: Rect) -> Rect {
     Rect { x: area.x + 1.min(area.width), width: area.width.saturating_sub(2), ..area }
 }
 
+/// What stands where in the whole area of the pane, title included.
+pub fn stage(app: &App, area: Rect) -> Option<Stage> {
+    let (program, machine) = app.program().zip(app.machine())?;
+    Some(Stage::of(app, program, machine, canvas(below_title(area))))
+}
+
 /// What of a program is drawn at a cell.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Spot {
-    /// The wildcard source, which stands for any state of it.
+    /// Its name among those that run beside each other; or the wildcard source, which stands for any state of it.
     Machine(MachineId),
     State(StateId),
     /// Its line, head or label. Where two lines cross, the one that goes across.
@@ -51,15 +82,14 @@ pub enum Spot {
 
 /// What is drawn at a cell of the screen, for the whole area of the pane, title included; none where nothing is.
 pub fn at(app: &App, area: Rect, cell: Position) -> Option<Spot> {
-    let (program, machine) = app.program().zip(app.machine())?;
-    let area = canvas(below_title(area));
-    if !area.contains(cell) {
-        return None;
+    let (program, stage) = app.program().zip(stage(app, area))?;
+    if let Some(tab) = stage.tabs.iter().find(|tab| tab.area.contains(cell)) {
+        return Some(Spot::Machine(tab.machine));
     }
-    let diagram = app.diagram(program, machine, area);
-    let (left, top) = Brush::new(app, program, machine, &diagram).origin(area);
-    let (x, y) = (cell.x - area.x, cell.y - area.y);
-    diagram.at(program, machine, Point { x: left.saturating_add(x), y: top.saturating_add(y) })
+    let scene = stage.scenes.iter().find(|scene| scene.area.contains(cell))?;
+    let (x, y) = (cell.x - scene.area.x, cell.y - scene.area.y);
+    let at = Point { x: scene.corner.x.saturating_add(x), y: scene.corner.y.saturating_add(y) };
+    scene.diagram.at(program, scene.machine, at)
 }
 
 /// What a person takes hold of there.
@@ -83,182 +113,4 @@ fn path_in(path: &str, room: u16) -> String {
         rest = inner;
     }
     if rest == path { path.into() } else { format!("{}/{rest}", glyphs::ELLIPSIS) }
-}
-
-struct Brush<'a> {
-    app: &'a App,
-    program: &'a Program,
-    machine: MachineId,
-    diagram: &'a Diagram,
-    active: Option<StateId>,
-    selected: Option<StateId>,
-    /// The transition taken last, and the name of the state it led out of.
-    last: Option<(u32, &'a str)>,
-}
-
-impl<'a> Brush<'a> {
-    fn new(app: &'a App, program: &'a Program, machine: MachineId, diagram: &'a Diagram) -> Brush<'a> {
-        let path = &program[machine].path;
-        let view = app.view();
-        let running = view.machines.get(path).filter(|machine| machine.running);
-        let last = running.and_then(|machine| Some((machine.last_taken?, &*machine.last_from)));
-        Brush {
-            app,
-            program,
-            machine,
-            diagram,
-            active: view.active(path).and_then(|state| program.state(state)),
-            selected: app.selected().and_then(|path| program.state(path)),
-            last: last.map(|(which, from)| match which {
-                Which::Own(index) => (index, from),
-                Which::Exit => (machine_graph::EXIT, from),
-            }),
-        }
-    }
-
-    fn draw(&self, area: Rect, buffer: &mut Buffer) {
-        let drawing = &self.diagram.drawing;
-        let (left, top) = self.origin(area);
-        for y in 0..area.height.min(drawing.height.saturating_sub(top)) {
-            for x in 0..area.width.min(drawing.width.saturating_sub(left)) {
-                let symbol = drawing.symbol(left + x, top + y);
-                let cell = drawing.cell(left + x, top + y);
-                if let Some(to) = buffer.cell_mut(Position::new(area.x + x, area.y + y))
-                    && !symbol.is_empty()
-                {
-                    to.set_symbol(&symbol).set_style(self.style(cell.part));
-                }
-            }
-        }
-        self.draw_heavy((left, top), area, buffer);
-        for node in 0..self.diagram.nodes.len() {
-            self.draw_inside(node, (left, top), area, buffer);
-        }
-        self.draw_breakpoints((left, top), area, buffer);
-    }
-
-    /// In a free cell beside the names of states and the labels of transitions: no glyph moves.
-    fn draw_breakpoints(&self, (left, top): (u16, u16), area: Rect, buffer: &mut Buffer) {
-        if self.app.view().breakpoints.is_empty() {
-            return;
-        }
-        let mut mark_at = |at: Point, by: Setter, style: Style| {
-            if let (Some(x), Some(y)) = (at.x.checked_sub(left), at.y.checked_sub(top))
-                && x < area.width
-                && y < area.height
-                && let Some(cell) = buffer.cell_mut(Position::new(area.x + x, area.y + y))
-            {
-                cell.set_symbol(mark(by)).set_style(style);
-            }
-        };
-        let colour = self.app.theme().breakpoint();
-        for (node, state) in self.diagram.nodes.iter().enumerate() {
-            let Some((state, at)) = state.zip(self.diagram.drawing.beside_name(node)) else { continue };
-            if let Some(by) = self.app.view().breaks_at_state(&self.program[state].path) {
-                let active = Some(state) == self.active;
-                mark_at(at, by, if active { self.node_style(node) } else { colour });
-            }
-        }
-        for edge in 0..self.diagram.edges.len() {
-            let by = self
-                .diagram
-                .transitions(self.program, self.machine, edge)
-                .find_map(|id| self.app.view().breaks_at_transition(id));
-            if let Some((by, at)) = by.zip(self.diagram.drawing.beside_label(edge)) {
-                mark_at(at, by, colour);
-            }
-        }
-    }
-
-    /// The drawing's cell in the upper left corner: the selected state, else the active one, is in sight.
-    fn origin(&self, area: Rect) -> (u16, u16) {
-        let drawing = &self.diagram.drawing;
-        let state = self.selected.and_then(|state| self.diagram.node_of(state));
-        let node = state.or_else(|| self.active.and_then(|state| self.diagram.node_of(state)));
-        let Some(rect) = node.and_then(|node| drawing.node_rect(node)) else { return (0, 0) };
-        let along = |end: u16, room: u16, whole: u16| {
-            (end.saturating_add(1)).saturating_sub(room).min(whole.saturating_sub(room))
-        };
-        (
-            along(rect.x + rect.width, area.width, drawing.width),
-            along(rect.y + rect.height, area.height, drawing.height),
-        )
-    }
-
-    fn style(&self, part: Part) -> Style {
-        let theme = self.app.theme();
-        match part {
-            Part::Blank => theme.normal(),
-            Part::Box(node) | Part::Mark(node) | Part::Inside(node) => self.node_style(node),
-            Part::Name(node) => {
-                let selected = self.selected.is_some() && self.diagram.nodes[node] == self.selected;
-                let style = self.node_style(node);
-                if selected { style.add_modifier(Modifier::UNDERLINED | Modifier::BOLD) } else { style }
-            }
-            Part::Line(edge) | Part::Label(edge) | Part::Head(edge) => self.edge_style(edge),
-            Part::Crossing { across, down } => {
-                let down_only = self.was_taken(down) && !self.was_taken(across);
-                self.edge_style(if down_only { down } else { across })
-            }
-        }
-    }
-
-    fn node_style(&self, node: usize) -> Style {
-        let theme = self.app.theme();
-        let Some(state) = self.diagram.nodes[node] else { return theme.dim() };
-        if Some(state) == self.active {
-            return theme.active().add_modifier(Modifier::REVERSED);
-        }
-        match self.app.view().gravity(&self.program[state].path) {
-            Some(gravity) => theme.gravity(gravity),
-            None => theme.normal(),
-        }
-    }
-
-    fn edge_style(&self, edge: usize) -> Style {
-        let style = self.app.theme().transition(self.diagram.edges[edge].kind);
-        if self.was_taken(edge) { style.add_modifier(Modifier::BOLD) } else { style }
-    }
-
-    /// Of a transition with several sources only the line out of the state that was left.
-    fn was_taken(&self, edge: usize) -> bool {
-        let edge = self.diagram.edges[edge];
-        self.last.is_some_and(|(index, from)| {
-            index == edge.index && edge.from.is_none_or(|state| &*self.program[state].name == from)
-        })
-    }
-
-    /// What was taken last is heavy, so that it shows without colours too.
-    fn draw_heavy(&self, (left, top): (u16, u16), area: Rect, buffer: &mut Buffer) {
-        for edge in (0..self.diagram.edges.len()).filter(|&edge| self.was_taken(edge)) {
-            for (at, glyph) in self.diagram.drawing.heavy_line(edge) {
-                let (Some(x), Some(y)) = (at.x.checked_sub(left), at.y.checked_sub(top)) else { continue };
-                if x < area.width
-                    && y < area.height
-                    && let Some(cell) = buffer.cell_mut(Position::new(area.x + x, area.y + y))
-                {
-                    cell.set_char(glyph).set_style(self.edge_style(edge));
-                }
-            }
-        }
-    }
-
-    /// The name of the state that is active inside.
-    fn draw_inside(&self, node: usize, (left, top): (u16, u16), area: Rect, buffer: &mut Buffer) {
-        let Some((state, room)) = self.diagram.nodes[node].zip(self.diagram.drawing.inside_rect(node)) else {
-            return;
-        };
-        let view = self.app.view();
-        let nested = self.program[state].machines.iter();
-        let Some(active) = nested.filter_map(|&inner| view.active(&self.program[inner].path)).next() else { return };
-        let at = (room.x.checked_sub(left), room.y.checked_sub(top));
-        if let (Some(x), Some(y)) = at
-            && x < area.width
-            && y < area.height
-        {
-            let width = room.width.min(area.width - x);
-            let text = format::fit(name(active), width);
-            buffer.set_stringn(area.x + x, area.y + y, text, usize::from(width), self.node_style(node));
-        }
-    }
 }

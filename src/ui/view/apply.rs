@@ -117,7 +117,7 @@ impl View {
         let t = self.t;
         let which = if taken.via.is_some() { Which::Exit } else { Which::Own(taken.index) };
         let machine = self.machines.entry(taken.machine.clone()).or_default();
-        (machine.last_taken, machine.last_from) = (Some(which), taken.from.clone());
+        machine.took(which, taken.from.clone());
         if self.taken.len() == TAKEN_KEPT {
             self.taken.pop_front();
         }

@@ -1,5 +1,6 @@
 //! A machine and its states as the records tell of them, and the timeout that comes next.
 
+use super::trail::Trace;
 use super::{Path, View};
 use crate::model::{Program, StateId, Trigger};
 use crate::runtime::time::Time;
@@ -13,18 +14,8 @@ pub struct Machine {
     pub entered: Time,
     /// The state that spawned it; none at top level.
     pub spawned_by: Option<Path>,
-    /// The transition taken last.
-    pub last_taken: Option<Which>,
-    /// The name of the state it led out of.
-    pub last_from: Path,
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Which {
-    /// Of the machine's own transitions, from 0 in the order written.
-    Own(u32),
-    /// An exit of a machine nested in it.
-    Exit,
+    /// The transitions taken last, the newest first.
+    pub trail: Vec<Trace>,
 }
 
 #[derive(Clone, Debug, Default, PartialEq)]

@@ -85,7 +85,7 @@ impl View {
             return;
         }
         for (path, machine) in &mut self.machines {
-            machine.last_from = renames.state_name(path, &machine.last_from);
+            machine.trail.iter_mut().for_each(|trace| trace.from = renames.state_name(path, &trace.from));
             machine.active = machine.active.as_ref().map(|state| renames.place(state));
             machine.spawned_by = machine.spawned_by.as_ref().map(|state| renames.place(state));
         }

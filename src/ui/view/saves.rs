@@ -54,6 +54,7 @@ impl View {
         self.variables.retain(|path, _| program.var(path).is_some());
         self.tuned.retain(|path, _| program.var(path).is_some());
         self.by_hand.retain(|path, _| program.var(path).is_some());
+        self.follow_trails(program);
         self.program = Some(program.clone());
         self.find_transitions();
     }

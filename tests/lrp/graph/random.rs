@@ -1,9 +1,9 @@
 //! Drawings of random machines, and of random texts.
 
-use lrp::ui::graph::{Edge, EdgeKind, Glyphs, Graph, Node, NodeKind, Options, draw};
+use lrp::ui::graph::{Edge, EdgeKind, Form, Glyphs, Graph, Node, NodeKind, Options, draw};
 use proptest::prelude::*;
 
-use super::{ASCII, MIDDLE, NARROWEST, ONE_ROW, UNICODE, meant, printed};
+use super::{ALL, ASCII, MIDDLE, NARROWEST, UNICODE, around, meant, printed, read_around};
 use crate::tracer::{columns, trace};
 
 /// A graph of up to `most` states, the last of them perhaps `*`, with up to four times as many edges of all kinds.
@@ -49,7 +49,7 @@ fn any_label() -> impl Strategy<Value = String> {
 }
 
 fn read_back(graph: &Graph) -> Result<(), TestCaseError> {
-    for options in [UNICODE, ASCII, ONE_ROW] {
+    for options in ALL {
         let drawing = draw(graph, &options);
         let text = drawing.text();
         prop_assert_eq!(trace(&text), Ok(meant(graph)), "{:?}\n{}", options, text);
@@ -59,9 +59,18 @@ fn read_back(graph: &Graph) -> Result<(), TestCaseError> {
 }
 
 fn read_back_within(graph: &Graph, width: u16) -> Result<(), TestCaseError> {
-    for options in [UNICODE, ASCII, MIDDLE] {
+    for options in ALL.into_iter().chain([MIDDLE]) {
         let text = printed(graph, width, &options).map_err(TestCaseError::fail)?;
         prop_assert_eq!(trace(&text), Ok(meant(graph)), "{:?} in {}\n{}", options, width, text);
+    }
+    Ok(())
+}
+
+fn read_around_within(graph: &Graph, width: u16) -> Result<(), TestCaseError> {
+    for (node, options) in (0..graph.nodes.len()).flat_map(|node| [(node, UNICODE), (node, ASCII)]) {
+        let (part, options) = around(graph, node, &options);
+        let text = printed(&part, width, &options).map_err(TestCaseError::fail)?;
+        prop_assert_eq!(read_around(&text, graph, node), Ok(()), "{:?} in {}\n{}", options, width, text);
     }
     Ok(())
 }
@@ -77,6 +86,11 @@ proptest! {
     #[test]
     fn narrow_machines_are_read_as_they_are(graph in any_graph(12), width in NARROWEST..100) {
         read_back_within(&graph, width)?;
+    }
+
+    #[test]
+    fn surroundings_are_read_as_they_are(graph in any_graph(12), width in NARROWEST..100) {
+        read_around_within(&graph, width)?;
     }
 }
 
@@ -107,8 +121,9 @@ proptest! {
             nodes: (0..8).map(node).collect(),
             edges: ends.iter().enumerate().map(edge).collect(),
         };
-        for glyphs in [Glyphs::Unicode, Glyphs::Ascii] {
-            let drawing = draw(&graph, &Options { glyphs, max_width: width, ..UNICODE });
+        let forms = [Form::Boxes, Form::Table, Form::Around(3), Form::Around(9)];
+        for (glyphs, form) in forms.into_iter().flat_map(|form| [(Glyphs::Unicode, form), (Glyphs::Ascii, form)]) {
+            let drawing = draw(&graph, &Options { form, glyphs, max_width: width, max_height: width, ..UNICODE });
             prop_assert_eq!(drawing.text().lines().count(), usize::from(drawing.height));
             for line in drawing.text().lines() {
                 prop_assert!(!line.contains(char::is_control), "{:?}", line);

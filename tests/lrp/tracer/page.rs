@@ -28,7 +28,7 @@ pub struct Script {
 const UNICODE: Script = Script {
     borders: ["▌", "▐"],
     nested: " ▸",
-    heads: ["◄◁", "►▷", "▲△", "▼▽"],
+    heads: ["◄◁", "►▷", "▲△⇡", "▼▽⇣"],
     across: ["─", "┄", "╌"],
     down: ["│", "┆", "╎"],
     crossing: "┼",
@@ -123,8 +123,7 @@ impl Column {
                 ("", _) => {}
                 (_, false) => return Err(format!("row {y}: a second name in a box")),
                 (name, true) => {
-                    let bare = name.strip_suffix(page.script.nested);
-                    (last.name, last.nested) = (bare.unwrap_or(name).to_owned(), bare.is_some());
+                    (last.name, last.nested) = super::named(name, &page.script);
                 }
             }
         }

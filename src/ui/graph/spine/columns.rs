@@ -3,8 +3,8 @@
 
 use super::lanes::{self, Track};
 use super::stack::Stack;
-use super::texts::{Limits, Texts};
 use super::{Run, Side};
+use crate::ui::graph::texts::{Limits, Texts};
 
 /// Columns between a label in a gap and the line next to it.
 const CLEARANCE: usize = 2;
@@ -17,6 +17,8 @@ const STEP: usize = 4;
 /// How wide the boxes and what is left of them are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Spacing {
+    /// Boxes in the middle of so many columns, and room beside them for what an edit may add.
+    Roomy(usize),
     /// Boxes in the middle of so many columns.
     Middle(usize),
     Stepped,
@@ -28,7 +30,7 @@ impl Spacing {
     fn box_width(self, text: usize) -> usize {
         let width = FRAME + text;
         match self {
-            Spacing::Middle(_) => width.next_multiple_of(2 * STEP).max(4 * STEP),
+            Spacing::Roomy(_) | Spacing::Middle(_) => width.next_multiple_of(2 * STEP).max(4 * STEP),
             Spacing::Stepped => width.next_multiple_of(STEP),
             Spacing::Tight => width,
         }
@@ -37,9 +39,28 @@ impl Spacing {
     /// The columns left of the boxes, where the lines there take `extent`.
     fn before(self, box_width: usize, extent: usize) -> usize {
         match self {
-            Spacing::Middle(width) => extent.next_multiple_of(STEP).max(width.saturating_sub(box_width) / 2),
+            Spacing::Roomy(width) | Spacing::Middle(width) => {
+                extent.next_multiple_of(STEP).max(width.saturating_sub(box_width) / 2)
+            }
             Spacing::Stepped => extent.next_multiple_of(STEP),
             Spacing::Tight => extent,
+        }
+    }
+
+    /// Lanes beside the boxes that are left to lines that come at a box or between neighbours.
+    fn spared_lanes(self) -> usize {
+        usize::from(self.is_roomy())
+    }
+
+    fn is_roomy(self) -> bool {
+        matches!(self, Spacing::Roomy(_))
+    }
+
+    /// How far from the boxes lines pass a label that reaches so far, so that it may become a little longer.
+    fn beside_label(self, reach: usize) -> usize {
+        match self {
+            Spacing::Roomy(_) => reach.next_multiple_of(STEP),
+            Spacing::Middle(_) | Spacing::Stepped | Spacing::Tight => reach,
         }
     }
 }
@@ -64,9 +85,9 @@ impl Columns {
     pub fn new(stack: &Stack, texts: &Texts, limits: Limits, spacing: Spacing) -> Columns {
         let box_width = match stack.levels.len() {
             0 => 0,
-            _ => spacing.box_width(texts.widest(limits)),
+            nodes => spacing.box_width((0..nodes).map(|node| texts.width(node, limits)).max().unwrap_or(1)),
         };
-        let lanes = |side| Lanes::new(stack, texts, limits, side, box_width);
+        let lanes = |side| Lanes::new(stack, texts, limits, side, box_width, spacing);
         let (mut left, right) = (lanes(Side::Left), lanes(Side::Right));
         left.extent = spacing.before(box_width, left.extent);
         Columns { box_width, left, right }
@@ -110,28 +131,34 @@ impl Columns {
 }
 
 impl Lanes {
-    fn new(stack: &Stack, texts: &Texts, limits: Limits, side: Side, box_width: usize) -> Lanes {
+    fn new(stack: &Stack, texts: &Texts, limits: Limits, side: Side, box_width: usize, spacing: Spacing) -> Lanes {
         let mut reach = vec![0; stack.height];
-        let (mut edges, mut tracks) = (Vec::new(), Vec::new());
+        let (mut edges, mut tracks, mut kept) = (Vec::new(), Vec::new(), Vec::new());
+        let end = |row| (row, stack.box_at(row));
         for (edge, run) in stack.runs.iter().enumerate() {
             let label = texts.label_width(edge, limits);
             match *run {
                 Run::Gap { row, .. } if run.side() == Some(side) => {
                     reach[row] = reach_in_gap(label, before_border(side, box_width));
+                    // When a state comes between the two, the arrow becomes a line: its lane is kept for it.
+                    if spacing.is_roomy() {
+                        kept.push(Track::between(end(row - 1), end(row + 1)).sparing(spacing.spared_lanes()));
+                    }
                 }
                 Run::Beside { from, to, .. } if run.side() == Some(side) => {
                     edges.push(edge);
-                    let end = |row| (row, stack.box_at(row));
-                    tracks.push(Track::between(end(from), end(to)));
-                    reach[from] = reach_in_line(label, texts.glyphs.label_padding());
+                    let track = Track::between(end(from), end(to));
+                    tracks.push(if track.is_long() { track.sparing(spacing.spared_lanes()) } else { track });
+                    reach[from] = spacing.beside_label(reach_in_line(label, texts.glyphs.label_padding()));
                     reach[to] = 2;
                 }
                 _ => {}
             }
         }
-        let lanes = lanes::assign(&tracks, &reach);
+        let mut lanes = lanes::assign(&[&tracks[..], &kept].concat(), &reach);
         let text = reach.iter().max().map_or(0, |reach| reach.saturating_sub(CLEARANCE));
         let extent = lanes.iter().copied().max().unwrap_or(0).max(text);
+        lanes.truncate(tracks.len());
         Lanes { edges, tracks, lanes, extent }
     }
 

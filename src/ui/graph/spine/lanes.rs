@@ -3,6 +3,8 @@
 /// A line's upright run.
 #[derive(Clone, Copy, Debug)]
 pub struct Track {
+    /// How many lanes beside the boxes it leaves to others.
+    spared: usize,
     /// Its first and last row, both included.
     pub top: usize,
     pub bottom: usize,
@@ -14,7 +16,16 @@ impl Track {
     /// Between two rows, each with the box that it belongs to.
     pub fn between(a: (usize, usize), b: (usize, usize)) -> Track {
         let ((top, first), (bottom, last)) = (a.min(b), a.max(b));
-        Track { top, bottom, boxes: (first, last) }
+        Track { spared: 0, top, bottom, boxes: (first, last) }
+    }
+
+    /// Leaves so many lanes beside the boxes to lines at a box or between neighbours.
+    pub fn sparing(self, lanes: usize) -> Track {
+        Track { spared: lanes, ..self }
+    }
+
+    pub fn is_long(self) -> bool {
+        self.boxes.1 > self.boxes.0 + 1
     }
 
     pub fn covers(self, row: usize) -> bool {
@@ -39,7 +50,7 @@ pub fn assign(tracks: &[Track], reach: &[usize]) -> Vec<usize> {
     let mut lanes = vec![0; tracks.len()];
     for i in order {
         let track = tracks[i];
-        let mut lane = 1 + reach[track.top..=track.bottom].iter().max().copied().unwrap_or(0);
+        let mut lane = 1 + track.spared + reach[track.top..=track.bottom].iter().max().copied().unwrap_or(0);
         while taken
             .get(lane)
             .is_some_and(|others| others.iter().any(|o| o.top <= track.bottom && track.top <= o.bottom))

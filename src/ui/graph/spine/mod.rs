@@ -9,14 +9,13 @@ mod ends;
 mod fit;
 mod lanes;
 mod stack;
-mod texts;
 
 use self::columns::{Columns, FRAME};
 use self::fit::{Fitted, fit};
 use self::stack::Stack;
-use self::texts::Texts;
 use super::glyphs::Way;
-use super::layout::{Block, Layout, Point, Route, Shortened, Words, cell, point, rect};
+use super::layout::{Block, Layout, Point, Route, Words, cell, point, rect};
+use super::texts::Texts;
 use super::{Graph, Options, words};
 
 /// `None` if no spine of these states and edges is as narrow as asked for.
@@ -65,7 +64,7 @@ struct Spine {
 }
 
 impl Spine {
-    fn layout(&self) -> Layout {
+    fn layout(self) -> Layout {
         let nodes = 0..self.stack.levels.len();
         let edges = 0..self.stack.runs.len();
         Layout {
@@ -73,10 +72,7 @@ impl Spine {
             height: cell(self.stack.height),
             blocks: nodes.map(|node| self.block(node)).collect(),
             routes: edges.map(|edge| self.route(edge)).collect(),
-            shortened: Shortened {
-                names: shortened(&self.names, self.texts.names()),
-                labels: shortened(&self.labels, self.texts.labels()),
-            },
+            shown: self.texts.shown(self.names, self.labels),
         }
     }
 
@@ -88,6 +84,7 @@ impl Spine {
         let name_x = x + (width - name_width - mark) / 2;
         let room = rect(x + FRAME / 2, level.name + 1, width - FRAME, 1);
         Block {
+            node,
             rect: rect(x, level.top, width, level.height),
             mark: (mark > 0).then(|| point(name_x + name_width + mark - 1, level.name)),
             name: Words { at: point(name_x, level.name), text },
@@ -117,7 +114,7 @@ impl Spine {
             },
             text,
         });
-        Route { points: vec![point(x, row)], label, head }
+        Route { points: vec![point(x, row)], label, target: None, head }
     }
 
     /// Out to the edge's lane, along it and back to the boxes.
@@ -135,6 +132,7 @@ impl Spine {
         Route {
             points: vec![at(1, from), at(lane, from), at(lane, to), at(1, to)],
             label,
+            target: None,
             head: match side {
                 Side::Left => Way::Right,
                 Side::Right => Way::Left,
@@ -154,15 +152,4 @@ impl Spine {
             Side::Right => point(left + self.columns.box_width - 1 + distance, row),
         }
     }
-}
-
-/// What is shown of each text that isn't whole, with the text.
-fn shortened(shown: &[String], whole: &[String]) -> Vec<(String, String)> {
-    let mut pairs: Vec<(String, String)> = Vec::new();
-    for (shown, whole) in shown.iter().zip(whole) {
-        if shown != whole && pairs.iter().all(|(known, _)| known != shown) {
-            pairs.push((shown.clone(), whole.clone()));
-        }
-    }
-    pairs
 }

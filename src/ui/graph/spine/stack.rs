@@ -1,9 +1,9 @@
 //! The rows of a spine: where each box and each end of an edge stands. Knows nothing of columns.
 
 use super::ends::{Ends, Flow};
-use super::texts::Texts;
 use super::{Run, Side};
 use crate::ui::graph::Graph;
+use crate::ui::graph::texts::Texts;
 
 /// Rows between two boxes.
 const GAP: usize = 1;
