@@ -25,7 +25,11 @@ macro_rules! behaviors {
 behaviors!(concurrent escapement exit forcing line_follower line_keeper live_scenario resettable_timer stopwatch);
 
 /// Behaviours of robots whose bridges are plugins: lrp itself runs them, with the robots' descriptions.
-const OF_PLUGINS: [(&str, &str); 1] = [("behaviors/ev3/line_follower_test.lua", "liblrp_bridge_ev3.so")];
+const OF_PLUGINS: [(&str, &str); 3] = [
+    ("behaviors/ev3/line_follower_test.lua", "liblrp_bridge_ev3.so"),
+    ("behaviors/ros2/deliver_test.lua", "liblrp_bridge_ros2.so"),
+    ("behaviors/ros2/greet_test.lua", "liblrp_bridge_ros2.so"),
+];
 
 #[test]
 fn behaviors_of_plugins() {

@@ -75,6 +75,42 @@ class Peer(Node):
 
         threading.Thread(target=send, daemon=True).start()
 
+    def stamp(self, topic, count, rate):
+        """Publishes the time, and says how long that took."""
+        publisher = self.create_publisher(cls("std_msgs/msg/Int64"), topic, 10)
+
+        def send():
+            time.sleep(1.0)
+            took = []
+            for _ in range(count):
+                began = time.time_ns()
+                publisher.publish(fill(cls("std_msgs/msg/Int64")(), {"data": began}))
+                took.append(time.time_ns() - began)
+                time.sleep(1.0 / rate)
+            say(stamped=topic, median=sorted(took)[count // 2])
+
+        threading.Thread(target=send, daemon=True).start()
+
+    def ping(self, out, back, count):
+        """Says how long a message takes there and back."""
+        came = threading.Event()
+        self.kept["<" + back] = self.create_subscription(cls("std_msgs/msg/Int64"), back, lambda _: came.set(), 10)
+        publisher = self.create_publisher(cls("std_msgs/msg/Int64"), out, 10)
+
+        def send():
+            time.sleep(1.0)
+            took = []
+            for _ in range(count):
+                came.clear()
+                began = time.monotonic_ns()
+                publisher.publish(cls("std_msgs/msg/Int64")())
+                came.wait(1.0)
+                took.append(time.monotonic_ns() - began)
+                time.sleep(0.005)
+            say(pinged=out, median=sorted(took)[count // 2])
+
+        threading.Thread(target=send, daemon=True).start()
+
     def raw(self, topic, type, payload):
         """Bytes that need not be a message."""
         if topic not in self.kept:

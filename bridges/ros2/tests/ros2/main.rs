@@ -3,8 +3,10 @@
 mod calls;
 mod codec;
 mod definitions;
+mod figures;
 mod forms;
 mod graph;
 mod peers;
+mod programs;
 mod topics;
 mod world;

@@ -27,7 +27,7 @@ pub fn enter(test: &str) -> Option<()> {
     let status = Command::new(unshare)
         .args(["--map-root-user", "--net", "sh", "-c", ready, "sh"])
         .arg(std::env::current_exe().expect("this program"))
-        .args([test, "--exact", "--nocapture", "--test-threads=1"])
+        .args([test, "--exact", "--include-ignored", "--nocapture", "--test-threads=1"])
         .env(INSIDE, "1")
         // Logs of the peers' own would go into the user's home.
         .env("ROS_LOG_DIR", std::env::temp_dir())
