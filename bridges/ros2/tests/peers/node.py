@@ -80,7 +80,8 @@ class Peer(Node):
         publisher = self.create_publisher(cls("std_msgs/msg/Int64"), topic, 10)
 
         def send():
-            time.sleep(1.0)
+            # Time to be found.
+            time.sleep(3.0)
             took = []
             for _ in range(count):
                 began = time.time_ns()
