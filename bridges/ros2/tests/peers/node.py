@@ -1,7 +1,6 @@
 """A node of rclpy that does what it is told: a JSON object a line comes in, what happens goes out likewise."""
 
 import json
-import os
 import sys
 import threading
 import time
@@ -138,7 +137,7 @@ class Peer(Node):
         kind = cls(type)
         self.kept[service] = self.create_service(kind, service, answer, callback_group=self.together)
 
-    def act(self, action, type, how, feedback=(), result=None, steps=1000):
+    def act(self, action, type, how, feedback=(), result=None, steps=300):
         kind = cls(type)
 
         def goal(request):
@@ -216,8 +215,6 @@ def main():
         say(done=True)
     peer.destroy_node()
     rclpy.shutdown()
-    # What still runs for a goal isn't waited for.
-    os._exit(0)
 
 
 main()
