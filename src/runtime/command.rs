@@ -4,7 +4,7 @@ use std::sync::Arc;
 
 use serde::{Deserialize, Serialize};
 
-use super::record::Finding;
+use super::record::{File, Finding};
 use crate::model::Edit;
 
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -16,6 +16,8 @@ pub enum Command {
     /// A text that can't be read as a program: it is reported, and what runs goes on.
     Reject {
         findings: Vec<Finding>,
+        #[serde(skip_serializing_if = "Vec::is_empty", default)]
+        files: Vec<File>,
     },
     Pause,
     Resume,

@@ -52,7 +52,7 @@ impl Engine {
             Command::Saves { mode } => self.saves = mode,
             Command::OnError { mode } => self.on_error = mode,
             Command::Explain { mode } => self.why.ask(mode),
-            Command::Reject { findings } => self.rare(What::Reject { findings }),
+            Command::Reject { findings, files } => self.rare(What::Reject { findings, files }),
             Command::Pause => self.pause("asked for", None),
             Command::Runstop => self.pause("runstop", None),
             Command::Resume => self.resume(),

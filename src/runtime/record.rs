@@ -31,6 +31,9 @@ pub enum What {
     /// An edit can't be read; the program that runs goes on.
     Reject {
         findings: Vec<Finding>,
+        /// The texts that errors were found in.
+        #[serde(skip_serializing_if = "Vec::is_empty", default)]
+        files: Vec<File>,
     },
     /// An edit waits to be taken over. The next one takes its place.
     Held(Held),

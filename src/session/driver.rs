@@ -16,7 +16,7 @@ use serde_json::Value;
 use self::robot::{Robot, hear, messages};
 use self::sent::{Delivery, Sent, cancel, send};
 use self::told::Told;
-use super::findings::errors_first;
+use super::findings::{errors_first, files};
 use super::modules;
 use super::plugins::Said;
 use super::robots::{Bridge, Concern, Problems, Stopper, Workshop};
@@ -215,13 +215,14 @@ impl Driver {
                 Ok(Concern::None) => {}
                 Ok(Concern::TakenOver) => {
                     if std::mem::take(&mut self.world_is_broken) {
-                        self.engine.say(What::Reject { findings: Vec::new() });
+                        self.engine.say(What::Reject { findings: Vec::new(), files: Vec::new() });
                     }
                     self.engine.say(What::Bridge(bridge.state()));
                 }
                 Err(Problems { sources, diagnostics }) => {
                     let sources = if sources.is_empty() { self.engine.program().sources.clone() } else { sources };
-                    self.engine.say(What::Reject { findings: errors_first(&diagnostics, &sources) });
+                    let (findings, files) = (errors_first(&diagnostics, &sources), files(&diagnostics, &sources));
+                    self.engine.say(What::Reject { findings, files });
                     self.world_is_broken = true;
                 }
             }

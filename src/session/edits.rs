@@ -160,7 +160,9 @@ impl Desk {
                 Command::Load(Edit::of(&self.running, program))
             }
             Err(Rejected { sources, diagnostics }) => {
-                Command::Reject { findings: findings::errors_first(&diagnostics, &sources) }
+                let (findings, files) =
+                    (findings::errors_first(&diagnostics, &sources), findings::files(&diagnostics, &sources));
+                Command::Reject { findings, files }
             }
         };
         self.settled.take(self.compiler.reached());
@@ -194,7 +196,7 @@ impl Desk {
                 if let Some(text) = self.taken(&path).flatten().cloned() {
                     self.settled.put(path, text);
                 }
-                Command::Reject { findings: Vec::new() }
+                Command::Reject { findings: Vec::new(), files: Vec::new() }
             }
             Saved::Missing { path } => {
                 self.settled.forget(&path);
@@ -216,14 +218,19 @@ impl Desk {
         let source = Source::new(path.display().to_string(), text);
         let mistake = if required { self.compiler.check_lua(&source, FileId(0)) } else { None };
         match mistake {
-            Some(mistake) => Command::Reject { findings: findings::errors_first(&[mistake], &[source]) },
+            Some(mistake) => {
+                let (mistakes, sources) = ([mistake], [source]);
+                let (findings, files) =
+                    (findings::errors_first(&mistakes, &sources), findings::files(&mistakes, &sources));
+                Command::Reject { findings, files }
+            }
             None => Command::FileChanged { file: path.display().to_string() },
         }
     }
 }
 
 fn rejected(finding: Finding) -> Command {
-    Command::Reject { findings: vec![finding] }
+    Command::Reject { findings: vec![finding], files: Vec::new() }
 }
 
 fn unreadable(path: &Path, why: &Unreadable) -> Finding {

@@ -127,7 +127,7 @@ impl Outcome {
     fn see(&mut self, record: &Record) {
         match &record.what {
             What::Load(load) => self.loaded(load),
-            What::Reject { findings } => {
+            What::Reject { findings, .. } => {
                 findings.iter().for_each(tell);
                 self.errors |= !self.loaded;
                 self.refused = !self.loaded;

@@ -63,6 +63,9 @@ pub enum Action {
     ToggleSource,
     ScrollLeft,
     ScrollRight,
+    Find,
+    FindNext,
+    FindPrevious,
     Menu,
     SwitchMouse,
     Hide,
@@ -195,6 +198,9 @@ table! {
     Action::Fold, "fold", ["Left", "h"], "", "hide what is inside, then go out", Moving, TREE;
     Action::ScrollLeft, "scroll-left", ["Left", "h"], "", "what is left of the text seen", Moving, SOURCE;
     Action::ScrollRight, "scroll-right", ["Right", "l"], "", "what is right of the text seen", Moving, SOURCE;
+    Action::Find, "find", ["/"], "find", "words in the text", Moving, SOURCE;
+    Action::FindNext, "find-next", ["n"], "", "the next line with these words", Moving, SOURCE;
+    Action::FindPrevious, "find-previous", ["N"], "", "the line before with these words", Moving, SOURCE;
     Action::Follow, "follow", ["f"], "", "follow the innermost change, or hold still", Moving, Reach::Screen;
     Action::NextBeside, "next-beside", ["."], "", "the next of the machines that run beside each other", Moving, STATES;
     Action::PanLeft, "pan-left", ["Left", "h"], "", "move the drawing to see more on its left", Moving, GRAPH;

@@ -22,6 +22,7 @@ mod reading;
 mod robots;
 mod saves;
 mod scroll;
+mod seeking;
 mod source;
 mod typing;
 mod values;
@@ -162,6 +163,8 @@ pub struct App {
     /// Where a person is in the program's text, if they went there.
     cursor: Option<Cursor>,
     source_left: u16,
+    /// What was looked for in it last.
+    sought: String,
     source_scroll: Scroll,
     tree_scroll: Scroll,
     values_scroll: Scroll,
@@ -238,6 +241,7 @@ impl App {
             detail_at: 0,
             cursor: None,
             source_left: 0,
+            sought: String::new(),
             source_scroll: Scroll::default(),
             tree_scroll: Scroll::default(),
             values_scroll: Scroll::default(),
@@ -270,6 +274,7 @@ impl App {
             What::Error(fault) => self.fault = Some((record.step, ProblemKey::of(fault))),
             What::Pause { reason, at } => self.paused(record.step, reason, at.as_ref()),
             What::Resume => self.halted = false,
+            What::Reject { .. } => self.settle(),
             What::Status { .. } => self.half_a_second(),
             What::Log(log) if is_refusal(log) => {
                 self.message = Some(log.message.clone());

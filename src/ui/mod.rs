@@ -2,6 +2,7 @@
 //! Nothing below this layer knows of it.
 
 pub mod action;
+pub mod alignment;
 pub mod app;
 pub mod cadence;
 pub mod clipboard;
@@ -31,6 +32,7 @@ pub mod robots;
 pub mod scope;
 pub mod settings;
 pub mod terminal;
+pub mod text;
 pub mod theme;
 pub mod tour;
 pub mod tree;

@@ -188,7 +188,7 @@ fn news_fades() {
     assert!(!news(&app) && frame(&app).contains("u tuned"));
 }
 
-fn held(restarts: Option<&str>) -> What {
+pub fn held(restarts: Option<&str>) -> What {
     let finding = Finding {
         severity: "warning".into(),
         code: "unused-event".into(),

@@ -9,7 +9,7 @@ type Path = std::sync::Arc<str>;
 pub fn line(record: &Record) -> String {
     let what = match &record.what {
         What::Load(load) => loaded(load),
-        What::Reject { findings } => {
+        What::Reject { findings, .. } => {
             format!("reject{}", findings.iter().map(|it| format!("\n    {}", finding(it))).collect::<String>())
         }
         What::Held(held) => waiting(held),

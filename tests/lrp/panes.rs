@@ -169,6 +169,24 @@ fn imported_text_is_shown_where_the_selection_is_in_it() {
     assert!(frame(&app).contains("source  arm.lrp") && frame(&app).contains("▸ 2●   (state up))"), "{}", frame(&app));
 }
 
+/// Running, paused, with something wrong, with an edit that waits.
+#[test]
+fn layouts_in_each_state_of_the_program() {
+    const SIZES: [(u16, u16); 3] = [(160, 30), (110, 30), (20, 5)];
+    check_at(&SIZES, "running", &Story::searching(), "");
+    let mut story = Story::searching();
+    story
+        .at(82)
+        .tell(What::Pause { reason: "breakpoint: state follower/looking".into(), at: Some("follower/looking".into()) });
+    check_at(&SIZES, "stopped_at", &story, "");
+    let mut story = Story::searching();
+    story.at(82).fault("it broke", "follower/looking/lookalgo/lookright", 19, 1);
+    check_at(&SIZES, "went_wrong", &story, "");
+    let mut story = Story::searching();
+    story.at(82).tell(crate::edits_on_screen::held(None));
+    check_at(&SIZES, "waits", &story, "");
+}
+
 #[test]
 fn panes_are_hidden_and_shown_again() {
     let mut app = screen(120, 40, &Story::searching());
@@ -238,6 +256,29 @@ fn keys_resize_the_focused_pane() {
 }
 
 #[test]
+fn words_are_found_in_the_text_and_round_its_end() {
+    let mut app = screen(120, 40, &Story::searching());
+    let at = |app: &App| app.text_line().map(|at| at.line);
+    press(&mut app, "6 Home / O n t I m e Enter");
+    assert_eq!(at(&app), Some(23));
+    press(&mut app, "n n n");
+    assert_eq!(at(&app), Some(26));
+    press(&mut app, "n");
+    assert_eq!(at(&app), Some(37));
+    press(&mut app, "n n");
+    assert_eq!(at(&app), Some(23), "from the end to the beginning");
+    press(&mut app, "N");
+    assert_eq!(at(&app), Some(38));
+    assert_eq!(press(&mut app, "/ ? ? Enter"), []);
+    assert_eq!((app.message(), at(&app)), (Some("`??` isn't in this text"), Some(38)));
+    press(&mut app, "/ Esc n");
+    assert_eq!(at(&app), Some(38), "the same words");
+    let mut app = screen(120, 40, &Story::searching());
+    press(&mut app, "6 n");
+    assert_eq!(app.message(), Some("nothing is looked for yet"));
+}
+
+#[test]
 fn nothing_of_the_text_is_missed() {
     let mut app = screen(120, 40, &Story::searching());
     press(&mut app, "6 z Home");
@@ -250,4 +291,47 @@ fn nothing_of_the_text_is_missed() {
         assert!(seen.contains(line.trim_end()), "{line}");
     }
     assert!(app.layout(Rect::new(0, 0, 120, 40)).is_some_and(|layout| layout.pane_at(Position::new(60, 20)).is_some()));
+}
+
+/// What isn't taken over is shown as it was saved, with what is wrong; what runs is marked as far as its lines are there.
+#[test]
+fn a_text_that_is_not_taken_over_is_shown_with_what_is_wrong() {
+    let text = LINE_FOLLOWER.replace("(event outofline [", "; lost\n  (event outofline ");
+    let mut story = Story::searching();
+    story.at(81).refuse(&text);
+    check_at(&SIZES, "refused_text", &story, "Down Down 6");
+    let mut app = screen(120, 40, &story);
+    press(&mut app, "6 Home PgDn Down Down Down Down");
+    assert_eq!(app.selected().map(|path| &**path), Some("follower/looking"), "its line has moved by one");
+    assert!(frame(&app).contains("▸ 15●   (state looking"), "{}", frame(&app));
+    go_on(&mut app, 90, |story| {
+        let text = LINE_FOLLOWER.replace("(event outofline [", "; lost\n  (event outofline [");
+        story.load(&program(&text), &[]);
+    });
+    assert!(!frame(&app).contains("lrp  not taken over") && frame(&app).contains("▸ 15●   (state looking"));
+}
+
+#[test]
+fn a_program_that_never_ran_is_shown_with_what_keeps_it_from_running() {
+    let mut story = Story::new();
+    story.refuse(&LINE_FOLLOWER.replacen("(machine lookalgo", "(machine lookalgo (", 1));
+    check_at(&[(120, 40)], "broken_text", &story, "");
+    let mut app = screen(80, 24, &story);
+    press(&mut app, "c Down Down");
+    assert!(frame(&app).contains("(machine lookalgo ("), "{}", frame(&app));
+}
+
+#[test]
+fn lines_are_found_again_around_a_change() {
+    use lrp::syntax::Source;
+    use lrp::ui::alignment::Alignment;
+    let (first, second) = (Source::new("a", "1\n2\n3\n4\n5"), Source::new("b", "1\n2\nx\ny\n4\n5"));
+    let alignment = Alignment::of(&first, &second);
+    let there: Vec<_> = (1..=5).map(|line| alignment.second(line)).collect();
+    assert_eq!(there, [Some(1), Some(2), None, Some(5), Some(6)]);
+    let back: Vec<_> = (1..=6).map(|line| alignment.first(line)).collect();
+    assert_eq!(back, [Some(1), Some(2), None, None, Some(4), Some(5)]);
+    let same = Alignment::of(&first, &first);
+    assert!((1..=5).all(|line| same.second(line) == Some(line)));
+    assert_eq!(same.second(6), None);
 }

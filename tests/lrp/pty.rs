@@ -190,7 +190,7 @@ fn every_size_is_filled_and_none_breaks_it() {
     }
     user.sees(&["moving", "looking", "lightlim"]);
     user.pty.resize(120, 40);
-    user.sees(&["source  line_follower.lrp", "(machine follower", "(var nobump := [true])"]);
+    user.sees(&["source  line_follower.lrp", "(machine follower"]);
     // What was hidden and moved stays so at every size.
     user.pty.type_in("4x1]]");
     user.shows("no log", |text| !text.contains("─ log"));

@@ -94,7 +94,8 @@ impl Stage {
         let command = match self.compiler.compile_after(Source::new("case.lrp", text), running) {
             Ok(program) => Command::Load(Edit::of(running, program)),
             Err(Rejected { sources, diagnostics }) => {
-                Command::Reject { findings: findings::errors_first(&diagnostics, &sources) }
+                let findings = findings::errors_first(&diagnostics, &sources);
+                Command::Reject { findings, files: findings::files(&diagnostics, &sources) }
             }
         };
         self.command(command);

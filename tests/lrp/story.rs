@@ -187,7 +187,17 @@ impl Story {
             line,
             column: 5,
         };
-        self.tell(What::Reject { findings: findings.iter().map(finding).collect() })
+        self.tell(What::Reject { findings: findings.iter().map(finding).collect(), files: Vec::new() })
+    }
+
+    /// A save that can't be taken over, as the compiler finds it.
+    pub fn refuse(&mut self, text: &str) -> &mut Story {
+        use lrp::session::findings;
+        let compiled = Compiler::new(Vec::new()).compile(Source::new("line_follower.lrp", text));
+        let Err(rejected) = compiled else { panic!("it is sound:\n{text}") };
+        let findings = findings::errors_first(&rejected.diagnostics, &rejected.sources);
+        let files = findings::files(&rejected.diagnostics, &rejected.sources);
+        self.tell(What::Reject { findings, files })
     }
 
     pub fn output(&mut self, name: &str, value: Value) -> &mut Story {

@@ -135,7 +135,8 @@ impl Bench {
         match self.compiler.compile_after(self.file.clone(), self.driver.engine().program()) {
             Ok(program) => self.load(program),
             Err(Rejected { sources, diagnostics }) => {
-                self.command(Command::Reject { findings: findings::errors_first(&diagnostics, &sources) })
+                let findings = findings::errors_first(&diagnostics, &sources);
+                self.command(Command::Reject { findings, files: Vec::new() })
             }
         }
     }
@@ -311,7 +312,7 @@ impl Bench {
         let loaded = self.records.iter().rposition(|record| matches!(record.what, What::Load(_))).unwrap_or(0);
         let mut troubles: Vec<Trouble> = self.driver.engine().faults().map(trouble).collect();
         for record in &self.records[loaded..] {
-            let What::Reject { findings } = &record.what else { continue };
+            let What::Reject { findings, .. } = &record.what else { continue };
             let errors = findings.iter().filter(|finding| finding.severity == "error");
             let all = errors.map(|finding| Trouble { finding: finding.clone(), state: Arc::default(), count: 1 });
             all.for_each(|trouble| put(&mut troubles, trouble));

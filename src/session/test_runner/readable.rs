@@ -60,7 +60,7 @@ fn trouble(trouble: &Trouble) -> String {
 fn what(what: &What) -> String {
     match what {
         What::Load(loaded) => load(loaded),
-        What::Reject { findings } => match findings.first() {
+        What::Reject { findings, .. } => match findings.first() {
             Some(first) => format!("edit refused: {}:{}:{}: {}", first.file, first.line, first.column, first.message),
             None => "edit refused".to_string(),
         },

@@ -13,7 +13,7 @@ use crate::ui::layout::{Layout, Pane, Simulated, Wish};
 use crate::ui::panes::diagram::{Diagram, View as Closeness};
 use crate::ui::scope::{Arrangement, Listing, Row};
 use crate::ui::theme::Theme;
-use crate::ui::tree;
+use crate::ui::tree::{self, Element};
 use crate::ui::view::{Edit, Outcome, Path, View, within};
 
 impl App {
@@ -136,8 +136,19 @@ impl App {
                 self.hindrance(action).is_none()
             }
             Action::WriteBack => self.selected_variable().is_some_and(|path| self.unwritten_value(&path).is_some()),
+            Action::Into => self.has_inside(),
+            Action::ToggleBreakpoint if self.focus == Pane::Log => self.break_in_log().is_ok(),
             Action::Reset => self.value.as_ref().is_some_and(|path| self.view.by_hand.contains_key(path)),
             _ => true,
+        }
+    }
+
+    /// Whether there is anything in the selected machine or state.
+    fn has_inside(&self) -> bool {
+        let Some((program, (_, element))) = self.program().zip(self.selected_element()) else { return false };
+        match element {
+            Element::Machine(machine) => !program[machine].states.is_empty(),
+            Element::State(state) => !program[state].machines.is_empty(),
         }
     }
 

@@ -47,7 +47,7 @@ impl App {
     }
 
     /// The transition of a line of the log, as far as its program still runs.
-    fn break_in_log(&self) -> Result<BreakAt, String> {
+    pub(super) fn break_in_log(&self) -> Result<BreakAt, String> {
         let Some(LogRow::Entry(number)) = &self.reading.place else {
             return Err("select a transition in the log, or a state".into());
         };

@@ -11,6 +11,7 @@ use crate::ui::action::Action;
 use crate::ui::layout::{Layout, Pane};
 use crate::ui::panes::{self, Target, footer};
 use crate::ui::pointer::{Gesture, Mouse, Pointer};
+use crate::ui::text::Text;
 
 /// Rows that the wheel moves at once.
 const WHEEL: usize = 3;
@@ -139,11 +140,15 @@ impl App {
     fn go_to_transition(&mut self, id: TransitionId) {
         let Some(program) = self.view.program.clone() else { return };
         let span = program[id].span;
-        let Some(source) = program.sources.get(usize::from(span.file.0)) else { return };
-        let line = super::TextLine { file: span.file, line: source.line(span.start as usize) };
-        self.go_to_text(line, span.start as usize);
-        let words = source.slice(span).split_whitespace().collect::<Vec<_>>().join(" ");
-        self.message = Some(format!("{}: {words}", line.line));
+        let Some(own) = program.sources.get(usize::from(span.file.0)) else { return };
+        let (number, start) = (own.line(span.start as usize), span.start as usize);
+        let words = own.slice(span).split_whitespace().collect::<Vec<_>>().join(" ");
+        self.message = Some(format!("{number}: {words}"));
+        let text = Text::of(&self.view, span.file);
+        let here = text.and_then(|text| Some((text.line_here(number)?, text.source)));
+        let Some((line, source)) = here else { return };
+        let offset = source.line_range(line).start + start - own.line_range(number).start;
+        self.go_to_text(super::TextLine { file: span.file, line }, offset);
     }
 
     fn drag(&mut self, layout: &Layout, at: Position) {
@@ -193,7 +198,7 @@ impl App {
                 self.detail_scroll.by(rows, length, page);
             }
             Pane::Source => {
-                let length = self.source().map_or(0, |(_, source)| source.line_count());
+                let length = self.text().map_or(0, |(_, text)| text.source.line_count());
                 self.source_scroll.by(rows, length, page);
             }
             Pane::Bridge => {

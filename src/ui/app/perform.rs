@@ -7,7 +7,7 @@ use super::{App, Effect, Help, LogRow, Overlay};
 use crate::runtime::command::Command;
 use crate::syntax::Span;
 use crate::ui::action::Action;
-use crate::ui::layout::{Extent, Figure, Pane};
+use crate::ui::layout::{Extent, Figure, Pane, Way};
 use crate::ui::tree::{self, Element};
 use crate::ui::view::{Mode, Path};
 
@@ -51,6 +51,9 @@ impl App {
             Action::SwitchOnError => return self.switch_on_error(),
             Action::OpenEditor => return self.open_editor(),
             Action::Copy => return self.copy(),
+            Action::Find => return self.ask_for_words(),
+            Action::FindNext => return self.find(Way::On),
+            Action::FindPrevious => return self.find(Way::Back),
             Action::Menu => return self.open_menu(),
             Action::SwitchMouse => return self.switch_mouse(),
             Action::Hide => return self.hide(),
@@ -217,8 +220,8 @@ impl App {
     }
 
     fn place_in_text(&self) -> Option<(Path, usize, usize)> {
-        let (spot, source) = self.source()?;
-        Some((source.name.clone(), spot.line, 1))
+        let (line, text) = self.text()?;
+        Some((text.source.name.clone(), line.line, 1))
     }
 
     pub(super) fn place_of_value(&self) -> Option<(Path, usize, usize)> {

@@ -19,6 +19,11 @@ impl Scroll {
         self.top = top_for(self.top, wanted, length, height);
     }
 
+    /// The selected row when it was brought into sight last.
+    pub fn at(self) -> Option<usize> {
+        self.seen.and_then(|(at, _)| at)
+    }
+
     /// Whether there is a selection to bring into sight.
     pub fn is_new(self, at: Option<usize>, height: usize) -> bool {
         self.seen != Some((at, height))

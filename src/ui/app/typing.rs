@@ -30,6 +30,8 @@ pub enum Goal {
     Tell(Path),
     /// A setting to be written into a robot's form.
     Setting(Path),
+    /// To go to where it stands in the program's text.
+    Words,
 }
 
 /// Whose words stand in the line.
@@ -49,7 +51,7 @@ impl Goal {
         match self {
             Goal::Value(var) => *var = renames.variable(var),
             Goal::Condition(machine) => *machine = renames.place(machine),
-            Goal::Filter(_) | Goal::Tell(_) | Goal::Setting(_) => (),
+            Goal::Filter(_) | Goal::Words | Goal::Tell(_) | Goal::Setting(_) => (),
         }
     }
 }
@@ -119,6 +121,7 @@ impl App {
             }
             Goal::Tell(robot) => Command::Tell { bridge: robot.to_string(), what: text },
             Goal::Setting(robot) => return self.write_setting(&robot, &text),
+            Goal::Words => return self.seek(text),
             Goal::Value(_) if text.is_empty() => {
                 return self.say("a value is a Lua expression, as in 128 or {x = 1}; Esc leaves");
             }

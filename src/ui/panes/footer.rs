@@ -102,6 +102,7 @@ impl<'a> Prompt<'a> {
             Goal::Filter(Pane::Log) => ("lines with".into(), " "),
             Goal::Filter(Pane::Bridge) => ("seen there, called".into(), " "),
             Goal::Filter(_) => ("variables called".into(), " "),
+            Goal::Words => ("find".into(), " "),
             Goal::Tell(robot) => (robot.to_string(), "."),
             Goal::Setting(robot) => (format!("into (bridge {robot} ..)"), " "),
             Goal::Condition(machine) if machine.is_empty() => ("pause when".into(), " "),
@@ -111,6 +112,7 @@ impl<'a> Prompt<'a> {
             Goal::Filter(_) => "Enter keeps  Esc shows all",
             Goal::Tell(_) => "Enter sends  Esc leaves",
             Goal::Setting(_) => "Enter writes it  Esc leaves",
+            Goal::Words => "Enter goes there  Esc leaves",
             Goal::Value(_) | Goal::Condition(_) => "Enter sets  Esc leaves",
         };
         Prompt { before, sign, input: &typing.input, text: typing.text, hint }

@@ -10,10 +10,10 @@ use unicode_width::UnicodeWidthChar;
 use super::breakpoints::mark;
 use super::log::sign;
 use super::{Target, Title, draw_nothing};
-use crate::model::{Program, StateId};
+use crate::model::{Program, State};
 use crate::runtime::record::Setter;
+use crate::syntax::Source;
 use crate::syntax::keyword::Keyword;
-use crate::syntax::{FileId, Source};
 use crate::ui::app::{App, TextLine};
 use crate::ui::format;
 use crate::ui::glyphs;
@@ -21,7 +21,8 @@ use crate::ui::graph::EdgeKind;
 use crate::ui::ink::{Ink, Inked};
 use crate::ui::layout::Pane;
 use crate::ui::pen::Pen;
-use crate::ui::view::{Problem, name};
+use crate::ui::text::Text;
+use crate::ui::view::{Path, Problem};
 
 /// Columns of a tab stop.
 const TAB: usize = 4;
@@ -51,7 +52,8 @@ pub fn draw(app: &App, area: Rect, buffer: &mut Buffer) -> Title {
             Shown::Message(line) => page.draw_message(line, pen),
         }
     }
-    let title = format!("{}  {}", Pane::Source.title(), format::file_name(&page.source.name));
+    let refused = if page.text.is_refused() { "  not taken over" } else { "" };
+    let title = format!("{}  {}{refused}", Pane::Source.title(), format::file_name(&page.source.name));
     Title::new(title, page.note(&rows))
 }
 
@@ -66,11 +68,11 @@ pub fn at(app: &App, area: Rect, cell: Position) -> Option<Target> {
 
 struct Page<'a> {
     app: &'a App,
-    program: &'a Program,
     spot: TextLine,
+    text: Text<'a>,
     source: &'a Source,
     /// Lines with what is wrong there, the worst first.
-    problems: Vec<&'a Problem>,
+    problems: Vec<(usize, &'a Problem)>,
     active: Vec<Active>,
     /// Columns of a line's number.
     digits: u16,
@@ -80,22 +82,27 @@ struct Page<'a> {
 
 /// The lines of an active state; the innermost last.
 struct Active {
-    state: StateId,
+    name: Path,
     lines: Range<usize>,
     has_active_inside: bool,
 }
 
 impl<'a> Page<'a> {
     fn of(app: &'a App, width: u16) -> Option<Page<'a>> {
-        let program = app.program()?;
-        let (spot, source) = app.source()?;
-        let mut problems: Vec<&Problem> = app.view().problems.iter().collect();
-        problems.retain(|problem| problem.key.file == source.name && !problem.is_of_rejected_text());
-        problems.sort_by_key(|problem| (problem.key.line, std::cmp::Reverse(problem.gravity)));
+        let (spot, text) = app.text()?;
+        let source = text.source;
+        let own = app.view().problems.iter().filter(|problem| problem.key.file == source.name);
+        let line = |problem: &Problem| match (problem.is_of_rejected_text(), text.is_refused()) {
+            (true, true) => Some(problem.key.line),
+            (true, false) => None,
+            (false, _) => text.line_here(problem.key.line),
+        };
+        let mut problems: Vec<(usize, &Problem)> = own.filter_map(|problem| Some((line(problem)?, problem))).collect();
+        problems.sort_by_key(|(line, problem)| (*line, std::cmp::Reverse(problem.gravity)));
         let digits = source.line_count().to_string().len() as u16;
         let room = width.saturating_sub(digits + MARGIN);
-        let active = active(app, program, spot.file, source);
-        Some(Page { app, program, spot, source, problems, active, digits, room })
+        let active = app.program().map_or_else(Vec::new, |program| active(app, program, &text));
+        Some(Page { app, spot, text, source, problems, active, digits, room })
     }
 
     /// From the first line seen on; where messages stand between lines, so that a person's line is seen all the same.
@@ -116,7 +123,7 @@ impl<'a> Page<'a> {
     }
 
     fn problem(&self, line: usize) -> Option<&'a Problem> {
-        self.problems.iter().find(|problem| problem.key.line == line).copied()
+        self.problems.iter().find(|(at, _)| *at == line).map(|(_, problem)| *problem)
     }
 
     fn stands_below(&self, line: usize) -> bool {
@@ -194,17 +201,15 @@ impl<'a> Page<'a> {
 
     fn breakpoint(&self, line: usize) -> Option<Setter> {
         let view = self.app.view();
-        if view.breakpoints.is_empty() {
-            return None;
-        }
-        let bytes = self.source.line_range(line);
+        let program = self.app.program().filter(|_| !view.breakpoints.is_empty())?;
+        let bytes = self.text.running(line)?;
         let begins = |span: crate::syntax::Span| {
             span.file == self.spot.file && (bytes.start..=bytes.end).contains(&(span.start as usize))
         };
-        let states = self.program.states.iter().filter(|state| begins(state.name_span));
+        let states = program.states.iter().filter(|state| begins(state.name_span));
         let at_state = states.filter_map(|state| view.breaks_at_state(&state.path)).next();
-        let transitions = self.program.machines.iter().flat_map(|machine| &machine.transitions);
-        let transitions = transitions.filter(|&&id| begins(self.program[id].span));
+        let transitions = program.machines.iter().flat_map(|machine| &machine.transitions);
+        let transitions = transitions.filter(|&&id| begins(program[id].span));
         at_state.or_else(|| transitions.filter_map(|&id| view.breaks_at_transition(id)).next())
     }
 
@@ -252,7 +257,7 @@ impl<'a> Page<'a> {
         });
         let (first, last) = (lines.clone().next().unwrap_or(1), lines.next_back().unwrap_or(1));
         let Some(innermost) = self.active.last() else { return String::new() };
-        let name = name(&self.program[innermost.state].path);
+        let name = &innermost.name;
         match innermost.lines.start {
             line if line < first => format!("{} {name} {}", glyphs::ACTIVE, glyphs::UP),
             line if line > last => format!("{} {name} {}", glyphs::ACTIVE, glyphs::DOWN),
@@ -261,21 +266,22 @@ impl<'a> Page<'a> {
     }
 }
 
-/// The active states of a file, outer ones before those nested in them.
-fn active(app: &App, program: &Program, file: FileId, source: &Source) -> Vec<Active> {
+/// The active states of a file, outer ones before those nested in them, as far as their lines stand here.
+fn active(app: &App, program: &Program, text: &Text) -> Vec<Active> {
     let view = app.view();
     let running = view.machines.keys().filter_map(|machine| program.state(view.active(machine)?));
-    let mut active: Vec<Active> = running
-        .filter(|&state| program[state].span.file == file)
-        .map(|state| {
-            let (begin, span) = (program[state].name_span.start, program[state].span);
-            let last = source.line(span.end.saturating_sub(1) as usize);
-            let inside = program[state].machines.iter().any(|&inner| view.active(&program[inner].path).is_some());
-            Active { state, lines: source.line(begin as usize)..last + 1, has_active_inside: inside }
-        })
-        .collect();
+    let states = running.map(|id| &program[id]).filter(|state| state.span.file == text.file);
+    let mut active: Vec<Active> = states.filter_map(|state| active_lines(app, program, text, state)).collect();
     active.sort_by_key(|active| active.lines.start);
     active
+}
+
+fn active_lines(app: &App, program: &Program, text: &Text, state: &State) -> Option<Active> {
+    let own = program.sources.get(usize::from(text.file.0))?;
+    let first = text.line_here(own.line(state.name_span.start as usize))?;
+    let last = text.line_here(own.line(state.span.end.saturating_sub(1) as usize)).unwrap_or(first).max(first);
+    let inside = state.machines.iter().any(|&inner| app.view().active(&program[inner].path).is_some());
+    Some(Active { name: state.name.clone(), lines: first..last + 1, has_active_inside: inside })
 }
 
 /// The range in stretches of one ink, plain ones between.

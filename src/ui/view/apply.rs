@@ -18,7 +18,7 @@ impl View {
         self.t = record.t;
         match &record.what {
             What::Load(load) => self.load(load),
-            What::Reject { findings } => self.reject(findings),
+            What::Reject { findings, files } => self.reject(findings, files),
             What::Held(held) => self.hold(held),
             What::Breakpoints { all } => {
                 self.breakpoints.clone_from(all);

@@ -38,6 +38,7 @@ pub use world::World;
 use crate::model::{Program, TransitionId};
 use crate::runtime::record::{Breakpoint, Finding, Held, Setter, Taken, Way};
 use crate::runtime::time::Time;
+use crate::syntax::Source;
 use crate::ui::format::file_name;
 
 pub type Path = Arc<str>;
@@ -78,6 +79,8 @@ pub struct View {
     pub problems: Vec<Problem>,
     /// The outcome of the last save.
     pub edit: Option<Edit>,
+    /// Texts that were saved and not taken over, as far as errors were found in them.
+    pub refused: Vec<Source>,
     /// The edit that waits, with what it would do.
     pub held: Option<Held>,
     /// All there are.
@@ -113,6 +116,7 @@ impl View {
             journal: Journal::default(),
             problems: Vec::new(),
             edit: None,
+            refused: Vec::new(),
             held: None,
             breakpoints: Vec::new(),
             transition_breaks: BTreeMap::new(),

@@ -5,7 +5,8 @@ use std::sync::Arc;
 use super::problem::{Origin, Problem};
 use super::{Edit, Outcome, Path, Renames, View, describe, owner, within};
 use crate::model::Program;
-use crate::runtime::record::{Finding, Held, Load};
+use crate::runtime::record::{File, Finding, Held, Load};
+use crate::syntax::Source;
 
 /// More changes than these are counted in the log.
 const TOLD: usize = 6;
@@ -18,6 +19,7 @@ impl View {
             self.mode = super::Mode::Running;
         }
         self.held = None;
+        self.refused.clear();
         self.guards.clear();
         self.rename(&Renames::of(&load.changes));
         self.note_edit(&edit);
@@ -77,7 +79,8 @@ impl View {
         }
     }
 
-    pub(super) fn reject(&mut self, findings: &[Finding]) {
+    pub(super) fn reject(&mut self, findings: &[Finding], files: &[File]) {
+        self.refused = files.iter().map(|file| Source::new(file.name.clone(), file.text.clone())).collect();
         self.problems.retain(|problem| problem.origin != Origin::Rejected);
         let rejected = findings.iter().map(|finding| Problem::from_finding(finding, Origin::Rejected, self.t));
         self.problems.splice(0..0, rejected);
