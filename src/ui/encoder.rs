@@ -78,6 +78,13 @@ impl Encoder {
         }
         let was_wide = self.shown(position).is_some_and(is_wide);
         self.go_to(position);
+        if was_wide && !is_wide(cell) {
+            // Its other half stays as it is in the frame, which is blank: nothing else would take it away.
+            self.set(PLAIN);
+            self.out.push_str("  ");
+            self.at = None;
+            self.go_to(position);
+        }
         self.put(cell);
         if let Some(index) = self.index(position) {
             self.shown[index] = Some(cell.clone());
