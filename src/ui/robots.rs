@@ -82,6 +82,9 @@ impl Row<'_> {
     pub fn setting(&self) -> Option<String> {
         let What::Found(found) = &self.what else { return None };
         let setting = found.setting.as_ref()?;
+        if setting.contains('=') {
+            return Some(setting.clone());
+        }
         Some(format!("{setting} = {}", format::source(&Value::from(&*found.name))?))
     }
 }

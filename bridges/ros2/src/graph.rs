@@ -188,7 +188,7 @@ impl Graph {
             what: "topic".to_string(),
             type_name: type_name.to_string(),
             doc: format!("{writers} publishing, {readers} subscribed"),
-            setting: Some(if writers > 0 { "subscribe" } else { "publish" }.to_string()),
+            setting: Some(entry(if writers > 0 { "subscribe" } else { "publish" }, name)),
         });
         let mut list: Vec<Found> = topics.chain(others).collect();
         let names: BTreeSet<&str> = self.nodes.values().flatten().map(|node| node.name.as_str()).collect();
@@ -200,13 +200,20 @@ impl Graph {
     }
 }
 
+/// Of a table of the form: the last part of the name, as Lua can have it.
+fn entry(table: &str, name: &str) -> String {
+    let last = name.rsplit('/').next().unwrap_or_default();
+    let plain: String = last.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect();
+    format!("{table}.{plain}")
+}
+
 fn service_or_action(endpoint: &Endpoint) -> Option<Found> {
     let found = |name: &str, what: &str, type_name: &str| Found {
         name: name.to_string(),
         what: what.to_string(),
         type_name: type_name.to_string(),
         doc: String::new(),
-        setting: Some(format!("{what}s")),
+        setting: Some(entry(&format!("{what}s"), name)),
     };
     let (name, type_name) = (&endpoint.name, &endpoint.type_name);
     if let Some(action) = name.strip_suffix("/_action/send_goal") {

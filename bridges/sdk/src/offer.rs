@@ -38,6 +38,9 @@ pub enum Want {
     States,
     /// What the program logs.
     Log,
+    /// Something that only a newer lrp knows.
+    #[serde(other)]
+    Unknown,
 }
 
 /// What a bridge offers under a configuration. May change while it is connected.
@@ -122,7 +125,8 @@ pub struct Found {
     pub type_name: String,
     #[serde(default, skip_serializing_if = "String::is_empty")]
     pub doc: String,
-    /// The setting of the form that would use it, as `subscribe`, and the value it takes there.
+    /// What the form would say to use it: `name`, or `subscribe.odom` for an entry of a table, where the value is its
+    /// name; else the whole of it, `inputs.light = 0`.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub setting: Option<String>,
 }

@@ -4,7 +4,7 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use lrp_bridge::{
-    About, Bridge, Call, Description, Event, Form, Item, Order, Output, Peer, Port, Problem, Robot, Scope, value,
+    About, Bridge, Call, Description, Event, Form, Item, Order, Output, Peer, Port, Problem, Robot, Scope, Want, value,
 };
 use serde_json::{Value, json};
 
@@ -170,6 +170,10 @@ fn what_it_does_not_know_is_left_out() {
     let order: Result<Order, _> = serde_json::from_str(r#"{"order":"ping","id":1,"and":"more"}"#);
     assert_eq!(order.ok(), Some(Order::Ping { id: 1 }));
     assert!(serde_json::from_str::<Order>(r#"{"order":"dance"}"#).is_err());
+    let hello =
+        r#"{"event":"hello","protocol":1,"kind":"odd","version":"1","summary":"","wants":["states","applause"]}"#;
+    let Ok(Event::Hello { about, .. }) = serde_json::from_str(hello) else { panic!("it is one") };
+    assert_eq!(about.wants, [Want::States, Want::Unknown]);
 }
 
 /// Says more than anybody can read.

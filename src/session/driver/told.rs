@@ -51,7 +51,7 @@ impl Told {
                     Want::Variables if news => Order::Variables { variables: all_variables(engine) },
                     Want::Variables if !variables.is_empty() => Order::Variables { variables: changed(&variables) },
                     Want::States if news || states => active(engine),
-                    Want::Variables | Want::States => continue,
+                    Want::Variables | Want::States | Want::Unknown => continue,
                 };
                 bridge.tell(order);
             }

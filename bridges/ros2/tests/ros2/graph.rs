@@ -28,11 +28,11 @@ fn the_graph_is_found_and_we_are_in_it() {
         setting: setting.map(str::to_string),
     };
     let wanted = [
-        found("/count", "action", "test_msgs/action/Fibonacci", Some("actions")),
+        found("/count", "action", "test_msgs/action/Fibonacci", Some("actions.count")),
         found("/driver", "node", "", None),
-        found("/reset", "service", "std_srvs/srv/Empty", Some("services")),
-        found("/cmd_vel", "topic", "geometry_msgs/msg/Twist", Some("publish")),
-        found("/odom", "topic", "nav_msgs/msg/Odometry", Some("subscribe")),
+        found("/reset", "service", "std_srvs/srv/Empty", Some("services.reset")),
+        found("/cmd_vel", "topic", "geometry_msgs/msg/Twist", Some("publish.cmd_vel")),
+        found("/odom", "topic", "nav_msgs/msg/Odometry", Some("subscribe.odom")),
     ];
     lrp.until("the whole graph", |event| match event {
         Event::Found { found } => {

@@ -138,6 +138,7 @@ fn calls_wait_for_the_line_that_answers() {
     assert_eq!(lrp.reply(place), Ok(json!({ "x": 0.5, "y": -1 })));
     assert_eq!((lrp.reply(first), lrp.reply(second)), (Ok(json!(41)), Ok(json!(42))));
     let place = lrp.call("where", vec![]);
+    assert_eq!(robot.line(), "W");
     robot.say("lost in the dark\n");
     assert_eq!(lrp.reply(place), Err("lost in the dark".into()));
 }
