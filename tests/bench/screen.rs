@@ -28,8 +28,8 @@ const WAITING: &str = "(machine m (state a) (state b) (ontime 3600000 a -> b)) (
 const STANDING: &str = "Up Down Down Down Down Down Down Down Down Down Down J";
 /// Two transitions, a variable and a nested machine at every step. Says after four seconds how many there were.
 const BUSY: &str = "(var n := [0]) (var said := [false])
-    (event over [now() >= 4000 and not said])
     (machine m
+      (event over [now() >= 4000 and not said])
       (state a (onentry [n = n + 1]) (machine inner (state i) (state j) (eps i -> j)) (onentry (spawn inner i)))
       (state b (onentry [n = n + 1]))
       (state tell (onentry [said = true; log.warn('steps ' .. n)]))

@@ -55,6 +55,16 @@ impl Fields {
 }
 
 impl Field {
+    /// How a form would declare it; a table has to be written out by hand.
+    pub fn example(&self) -> Option<&'static str> {
+        match self.type_name() {
+            "number" => Some("0"),
+            "text" => Some("\"\""),
+            "boolean" => Some("false"),
+            _ => None,
+        }
+    }
+
     pub fn type_name(&self) -> &'static str {
         match self {
             Field::Text(text) if super::template::number(text).is_some() => "number",

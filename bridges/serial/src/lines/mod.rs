@@ -127,7 +127,7 @@ impl Lines {
             what: "field".into(),
             type_name: field.type_name().into(),
             doc: "comes in, and no input takes it".into(),
-            setting: Some(format!("inputs.{name} = 0")),
+            setting: field.example().map(|example| format!("inputs.{name} = {example}")),
         };
         self.unused.insert(name.to_string(), found);
         heard.push(Heard::Fields(self.unused.values().cloned().collect()));

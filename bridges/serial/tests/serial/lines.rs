@@ -83,7 +83,7 @@ fn fields_that_no_input_takes_are_told() {
         _ => None,
     });
     let told: Vec<_> = found.iter().map(|found| (&*found.name, &*found.type_name, found.setting.as_deref())).collect();
-    assert_eq!(told, [("light", "number", Some("inputs")), ("name", "text", Some("inputs"))]);
+    assert_eq!(told, [("light", "number", Some("inputs.light = 0")), ("name", "text", Some("inputs.name = \"\""))]);
 }
 
 #[test]
