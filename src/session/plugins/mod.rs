@@ -6,6 +6,7 @@ mod folders;
 mod host;
 mod incoming;
 mod keeper;
+mod life;
 mod line;
 mod process;
 
