@@ -2,8 +2,9 @@
 
 use std::fmt::Write;
 
-use ratatui::style::{Color, Style};
+use ratatui::style::Style;
 
+use crate::ui::encoder::number;
 use crate::ui::graph::{Drawing, Graph, Part};
 use crate::ui::theme::Theme;
 
@@ -16,7 +17,7 @@ pub fn inked(drawing: &Drawing, graph: &Graph, theme: &Theme) -> String {
         let (mut x, mut rest) = (0, line);
         while !rest.is_empty() && x < drawing.width {
             let symbol = drawing.symbol(x, y);
-            let wanted = code(style(drawing.cell(x, y).part, graph, theme));
+            let wanted = style(drawing.cell(x, y).part, graph, theme).fg.and_then(number);
             if !symbol.is_empty() && wanted != ink {
                 // Writing to a string can't fail.
                 let _ = write!(out, "\x1b[{}m", wanted.unwrap_or(0));
@@ -37,27 +38,4 @@ fn style(part: Part, graph: &Graph, theme: &Theme) -> Style {
         }
         Part::Blank | Part::Box(_) | Part::Name(_) | Part::Mark(_) | Part::Inside(_) | Part::Target(_) => Style::new(),
     }
-}
-
-/// The number that a terminal knows a colour of text by.
-fn code(style: Style) -> Option<u8> {
-    Some(match style.fg? {
-        Color::Black => 30,
-        Color::Red => 31,
-        Color::Green => 32,
-        Color::Yellow => 33,
-        Color::Blue => 34,
-        Color::Magenta => 35,
-        Color::Cyan => 36,
-        Color::Gray => 37,
-        Color::DarkGray => 90,
-        Color::LightRed => 91,
-        Color::LightGreen => 92,
-        Color::LightYellow => 93,
-        Color::LightBlue => 94,
-        Color::LightMagenta => 95,
-        Color::LightCyan => 96,
-        Color::White => 97,
-        Color::Reset | Color::Rgb(..) | Color::Indexed(_) => return None,
-    })
 }

@@ -253,11 +253,9 @@ fn sequence(codes: impl Iterator<Item = String>) -> String {
     format!("\x1b[{}m", codes.collect::<Vec<_>>().join(";"))
 }
 
-/// `ground`: 0 of a glyph, 10 of what is behind it.
-fn colour(colour: Color, ground: u16) -> String {
-    let mut code = String::new();
-    let number = match colour {
-        Color::Reset => 39,
+/// The number that a terminal knows one of its own 16 colours by, as that of a glyph.
+pub fn number(colour: Color) -> Option<u8> {
+    Some(match colour {
         Color::Black => 30,
         Color::Red => 31,
         Color::Green => 32,
@@ -274,8 +272,14 @@ fn colour(colour: Color, ground: u16) -> String {
         Color::LightMagenta => 95,
         Color::LightCyan => 96,
         Color::White => 97,
-        Color::Indexed(_) | Color::Rgb(..) => 38,
-    };
+        Color::Reset | Color::Rgb(..) | Color::Indexed(_) => return None,
+    })
+}
+
+/// `ground`: 0 of a glyph, 10 of what is behind it.
+fn colour(colour: Color, ground: u8) -> String {
+    let mut code = String::new();
+    let number = number(colour).unwrap_or(if colour == Color::Reset { 39 } else { 38 });
     let _ = write!(code, "{}", number + ground);
     match colour {
         Color::Indexed(index) => _ = write!(code, ";5;{index}"),
