@@ -305,6 +305,10 @@ fn bridges_are_listed() {
 
 #[test]
 fn the_behaviours_pass_their_tests() {
+    for kind in ["ev3", "ros2"] {
+        let library = Path::new(env!("CARGO_BIN_EXE_lrp")).with_file_name(format!("deps/liblrp_bridge_{kind}.so"));
+        assert!(library.exists(), "{} is missing: the tests are run by `cargo test --workspace`", library.display());
+    }
     let said = lrp(&root().join("behaviors"), &["test"]);
     assert_eq!((said.code, &*said.err), (Some(0), ""), "{said:?}");
     let folder = tempfile::tempdir().unwrap();

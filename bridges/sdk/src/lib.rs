@@ -46,6 +46,7 @@ mod message;
 mod offer;
 mod orders;
 mod peer;
+mod read;
 mod robot;
 mod run;
 pub mod value;

@@ -7,8 +7,8 @@ use serde_json::Value;
 
 use crate::offer::{About, Description, Found, Problem};
 
-/// What lrp tells a bridge.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// What lrp tells a bridge. Read in read.rs.
+#[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(tag = "order", rename_all = "kebab-case")]
 pub enum Order {
     /// What would be offered under this configuration? Nothing is connected for it.
@@ -26,7 +26,7 @@ pub enum Order {
     /// What became of a bridge's `set`; no error: done.
     Answer {
         id: u64,
-        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[serde(skip_serializing_if = "Option::is_none")]
         error: Option<String>,
     },
     /// All variables, or those that changed, for a bridge that wants them.
@@ -42,36 +42,35 @@ pub enum Order {
         level: Level,
         message: String,
         /// Path of the state whose block says it; none: the program itself.
-        #[serde(default, skip_serializing_if = "Option::is_none")]
+        #[serde(skip_serializing_if = "Option::is_none")]
         state: Option<String>,
     },
 }
 
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Form {
     /// What the program calls the robot.
     pub name: String,
     pub config: Value,
     /// The program's folder: relative paths start there.
-    #[serde(default)]
     pub folder: PathBuf,
 }
 
 /// One thing that a step sends.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
 pub enum Item {
     Call(Call),
     Output(Output),
 }
 
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Output {
     pub output: String,
     pub value: Value,
 }
 
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Call {
     /// `say`, or a device's as `motorA.start`.
     pub call: String,
@@ -81,14 +80,14 @@ pub struct Call {
     pub arguments: Vec<Value>,
 }
 
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Variable {
     /// `follower/speed`; a global by its name alone.
     pub path: String,
     pub value: Value,
 }
 
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Active {
     pub machine: String,
     pub state: String,

@@ -42,9 +42,12 @@ impl Peer {
     }
 
     pub fn order(&mut self, order: Order) {
-        let mut line = serde_json::to_vec(&order).expect("an order");
-        line.push(b'\n');
-        self.orders.as_mut().expect("an open conversation").write_all(&line).expect("a bridge that listens");
+        self.line(&serde_json::to_string(&order).expect("an order"));
+    }
+
+    /// Whatever it may be.
+    pub fn line(&mut self, line: &str) {
+        writeln!(self.orders.as_mut().expect("an open conversation"), "{line}").expect("a bridge that listens");
     }
 
     pub fn configure(&mut self, config: Value) {

@@ -13,7 +13,7 @@ use std::time::Duration;
 use crate::message::{Event, Form, Item, Level, Order, Output};
 use crate::orders::{End, Orders};
 use crate::robot::Robot;
-use crate::{Bridge, News, PROTOCOL};
+use crate::{Bridge, News, PROTOCOL, read};
 
 /// How long a bridge may take to stop its robot and end, once lrp is gone.
 const END: Duration = Duration::from_secs(2);
@@ -89,7 +89,7 @@ fn read(input: impl Read, orders: &Orders, robot: &Robot) {
     for line in BufReader::new(input).lines() {
         let Ok(line) = line else { break };
         // What this version doesn't know is left out, so that a newer lrp can say more.
-        if let Ok(order) = serde_json::from_str(&line) {
+        if let Some(order) = read::order(&line) {
             let is_stop = order == Order::Stop;
             let dropped = orders.put(order);
             if !is_stop && !dropped.is_empty() {

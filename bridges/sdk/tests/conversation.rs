@@ -4,7 +4,8 @@ use std::sync::{Arc, Mutex};
 use std::time::Duration;
 
 use lrp_bridge::{
-    About, Bridge, Call, Description, Event, Form, Item, Order, Output, Peer, Port, Problem, Robot, Scope, Want, value,
+    About, Active, Bridge, Call, Description, Event, Form, Item, Level, News, Order, Output, Peer, Port, Problem,
+    Robot, Scope, Variable, Want, value,
 };
 use serde_json::{Value, json};
 
@@ -56,8 +57,16 @@ impl Bridge for Diary {
         }
     }
 
+    fn cancel(&mut self, id: u64) {
+        self.told.push(format!("cancel {id}"));
+    }
+
     fn flush(&mut self) {
         self.told.push("flush".into());
+    }
+
+    fn hear(&mut self, news: News) {
+        self.told.push(format!("{news:?}"));
     }
 
     fn stop(&mut self) {
@@ -94,6 +103,36 @@ fn it_is_told_everything_in_order() {
     assert_eq!(lrp.reply(9), Err("no `nothing`".into()));
     lrp.configure(json!({ "a": 1 }));
     assert_eq!(told(&mut lrp), json!(["connect {}", "page 1", "page 2", "flush", "configure {\"a\":1}"]));
+}
+
+#[test]
+fn news_arrive_as_they_were_told() {
+    let mut lrp = diary();
+    let variables = vec![Variable { path: "follower/speed".into(), value: json!([0.5, "fast", null]) }];
+    let machines = vec![Active { machine: "follower".into(), state: "moving".into(), since: 12.5 }];
+    let (t, level, message, state) = (20.25, Level::Warn, "slow".to_string(), Some("follower/moving".to_string()));
+    for order in [
+        Order::Cancel { id: 3 },
+        Order::Answer { id: 4, error: None },
+        Order::Answer { id: 5, error: Some("no such variable".into()) },
+        Order::Variables { variables: variables.clone() },
+        Order::States { t, machines: machines.clone() },
+        Order::Log { level, message: message.clone(), state: state.clone() },
+        Order::Log { level: Level::Debug, message: message.clone(), state: None },
+    ] {
+        lrp.order(order);
+    }
+    let news = [
+        News::Answer { id: 4, error: None },
+        News::Answer { id: 5, error: Some("no such variable".into()) },
+        News::Variables(variables),
+        News::States { t, machines },
+        News::Log { level, message: message.clone(), state },
+        News::Log { level: Level::Debug, message, state: None },
+    ];
+    let pages = ["connect {}".to_string(), "cancel 3".to_string()];
+    let pages: Vec<String> = pages.into_iter().chain(news.iter().map(|news| format!("{news:?}"))).collect();
+    assert_eq!(told(&mut lrp), json!(pages));
 }
 
 #[test]
@@ -167,9 +206,13 @@ fn a_panic_stops_the_robot_and_ends_it() {
 
 #[test]
 fn what_it_does_not_know_is_left_out() {
-    let order: Result<Order, _> = serde_json::from_str(r#"{"order":"ping","id":1,"and":"more"}"#);
-    assert_eq!(order.ok(), Some(Order::Ping { id: 1 }));
-    assert!(serde_json::from_str::<Order>(r#"{"order":"dance"}"#).is_err());
+    let mut lrp = diary();
+    for line in
+        [r#"{"order":"dance","id":1}"#, "", "[]", "{", r#"{"order":"ping"}"#, r#"{"order":"ping","id":1,"and":"more"}"#]
+    {
+        lrp.line(line);
+    }
+    let Some(Event::Pong { id: 1 }) = lrp.event(Duration::from_secs(10)) else { panic!("no pong, or another one") };
     let hello =
         r#"{"event":"hello","protocol":1,"kind":"odd","version":"1","summary":"","wants":["states","applause"]}"#;
     let Ok(Event::Hello { about, .. }) = serde_json::from_str(hello) else { panic!("it is one") };
