@@ -1,7 +1,9 @@
 //! What bridges cost the program: how long a message takes there and back, and how late steps are beside bridges that
 //! hang, crash or flood. Ratios within one run.
 
+use std::io::Write;
 use std::path::{Path, PathBuf};
+use std::process::{Command as Process, Stdio};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
@@ -9,7 +11,7 @@ use lrp::model::{Edit, Program};
 use lrp::runtime::{Command, Options, Record, Time, What};
 use lrp::session::compile::Compiler;
 use lrp::session::driver::Driver;
-use lrp::session::plugins::{Folders, Plugins};
+use lrp::session::plugins::{Folders, Plugin, Plugins};
 use lrp::session::robots::{Robots, Workshop};
 use lrp::syntax::Source;
 
@@ -24,9 +26,10 @@ fn main() {
         println!("first: cargo build --release -p lrp-bridge --examples");
         return;
     }
-    let plugins = Plugins::new(Folders::new(vec![examples]), binary);
+    let built = binary.with_file_name("");
+    let plugins = Plugins::new(Folders::new(vec![examples, built.join("deps"), built]), binary.clone());
     round_trip(&plugins);
-    sizes(&plugins);
+    sizes(&plugins.folders, &binary);
     lateness(&plugins);
 }
 
@@ -79,11 +82,34 @@ fn round_trip(plugins: &Plugins) {
     println!("there and back through a bridge's process, ms: median {:.3}  p99 {:.3}", at(0.5), at(0.99));
 }
 
-fn sizes(plugins: &Plugins) {
-    for plugin in plugins.folders.all() {
-        let bytes = std::fs::metadata(&plugin.path).map_or(0, |data| data.len());
-        println!("{}: {} KB", plugin.path.display(), bytes / 1024);
+/// Of each bridge's library on disk, and of its process while it looks for a robot that isn't there.
+fn sizes(folders: &Folders, lrp: &Path) {
+    println!("\nbridge     library, KB     process, KB resident");
+    for Plugin { kind, path, .. } in folders.all() {
+        let library = std::fs::metadata(&path).map_or(0, |data| data.len());
+        let config = match kind.as_str() {
+            "ev3" => r#"{"address":"127.0.0.1:9"}"#,
+            "serial" => r#"{"port":"/dev/none"}"#,
+            "ros2" => r#"{"localhost":true}"#,
+            _ => "{}",
+        };
+        println!("{kind:10} {:>11} {:>24}", library / 1000, resident(lrp, &path, config));
     }
+}
+
+fn resident(lrp: &Path, library: &Path, config: &str) -> String {
+    let mut host = Process::new(lrp);
+    host.arg("bridge-host").arg(library).stdin(Stdio::piped()).stdout(Stdio::null());
+    let mut host = host.spawn().expect("a process");
+    let order = format!(r#"{{"order":"configure","name":"robot","config":{config},"folder":"."}}"#);
+    let mut orders = host.stdin.take().expect("a pipe");
+    writeln!(orders, "{order}").expect("a bridge that listens");
+    sleep(Duration::from_secs(2));
+    let status = std::fs::read_to_string(format!("/proc/{}/status", host.id())).expect("its status");
+    drop(orders);
+    host.wait().expect("its end");
+    let resident = status.lines().find_map(|line| line.strip_prefix("VmRSS:"));
+    resident.unwrap_or_default().trim().trim_end_matches(" kB").to_string()
 }
 
 /// By how much steps at 100 Hz come too late.

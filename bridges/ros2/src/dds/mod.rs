@@ -5,7 +5,7 @@ pub mod qos;
 mod raw;
 
 use std::collections::{BTreeSet, HashMap};
-use std::net::IpAddr;
+use std::net::{IpAddr, Ipv4Addr, UdpSocket};
 use std::sync::{Arc, Condvar, Mutex, MutexGuard};
 use std::task::{Wake, Waker};
 use std::time::Duration;
@@ -25,6 +25,10 @@ pub type Sample = DeserializedCacheChange<Raw>;
 
 /// How often discovery is looked at, and how long anything else may be late.
 const TICK: Duration = Duration::from_millis(10);
+
+/// Where messages to a multicast address go, by the RTPS specification (9.6.2.3).
+const MESSAGES_PORT: u16 = 7401;
+const PORTS_PER_DOMAIN: u16 = 250;
 
 pub struct Link {
     participant: DomainParticipant,
@@ -66,7 +70,7 @@ impl Link {
             builder = builder.with_only_networks(networks);
         }
         let failed = |error: rustdds::dds::CreateError| format!("can't join DDS domain {domain}: {error:?}");
-        let participant = builder.build().map_err(failed)?;
+        let participant = without_multicast(domain, || builder.build()).map_err(failed)?;
         let policies = Qos::DEFAULT.for_writer();
         Ok(Link {
             discovery: participant.status_listener(),
@@ -141,6 +145,17 @@ impl Link {
     pub fn discover(&self) -> Option<DomainParticipantStatusEvent> {
         self.discovery.try_recv_status()
     }
+}
+
+/// Builds a participant that offers no multicast address for messages, only one for discovery. RustDDS would offer both
+/// that and its own address, and then Fast DDS sends everything twice, on wireless networks at a crawl; and the second copy
+/// of a big message's last part is kept as if it were a message to come. RustDDS goes without where the port is taken.
+fn without_multicast<T>(domain: u16, build: impl FnOnce() -> T) -> T {
+    let port = MESSAGES_PORT.saturating_add(domain.saturating_mul(PORTS_PER_DOMAIN));
+    let taken = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, port));
+    let built = build();
+    drop(taken);
+    built
 }
 
 impl Writer {
