@@ -10,6 +10,14 @@ use crate::world::{Node, enter};
 
 const STRING: &str = "std_msgs/msg/String";
 
+const SEND: &str = "/navigate_to_pose/_action/send_goal";
+
+/// As `enter`, where there is such a robot.
+fn drive(test: &str) -> Option<()> {
+    peers::navigation()?;
+    enter(&format!("navigation::{test}"))
+}
+
 /// A behaviour as it is in its file.
 fn source(name: &str) -> String {
     let text = std::fs::read_to_string(peers::behavior(name)).expect("a behaviour");
@@ -31,8 +39,6 @@ fn both(text: &str) -> (Node, Program) {
     robot.graph_where("lrp", |seen| has(seen, "publishers", "/say") && has(seen, "clients", SEND));
     (robot, lrp)
 }
-
-const SEND: &str = "/navigate_to_pose/_action/send_goal";
 
 fn has(seen: &Value, key: &str, name: &str) -> bool {
     seen[key].as_array().is_some_and(|pairs| pairs.iter().any(|pair| pair[0] == name))
@@ -65,8 +71,7 @@ fn trip(robot: &mut Node, to: Value) {
 
 #[test]
 fn somebody_is_greeted_at_the_place_that_a_person_names() {
-    let test = "navigation::somebody_is_greeted_at_the_place_that_a_person_names";
-    let Some(_) = peers::navigation().and_then(|_| enter(test)) else { return };
+    let Some(()) = drive("somebody_is_greeted_at_the_place_that_a_person_names") else { return };
     let (mut robot, mut lrp) = both(&source("ros2/greet.lrp"));
     tell(&mut robot, "/place", "kitchen");
     lrp.until_in("greeter/driving");
@@ -88,8 +93,7 @@ fn somebody_is_greeted_at_the_place_that_a_person_names() {
 
 #[test]
 fn who_can_not_be_reached_is_told_of_and_the_robot_comes_home() {
-    let test = "navigation::who_can_not_be_reached_is_told_of_and_the_robot_comes_home";
-    let Some(_) = peers::navigation().and_then(|_| enter(test)) else { return };
+    let Some(()) = drive("who_can_not_be_reached_is_told_of_and_the_robot_comes_home") else { return };
     // Further away than the map goes.
     let text = changed(&source("ros2/greet.lrp"), "home = {", "moon = { 384e6, 0.0 }, home = {");
     let (mut robot, mut lrp) = both(&text);
@@ -115,9 +119,10 @@ fn who_can_not_be_reached_is_told_of_and_the_robot_comes_home() {
 }
 
 #[test]
-fn a_message_goes_to_each_place_but_for_what_is_blocked_and_to_one_that_is_added_on_the_way() {
-    let test = "navigation::a_message_goes_to_each_place_but_for_what_is_blocked_and_to_one_that_is_added_on_the_way";
-    let Some(_) = peers::navigation().and_then(|_| enter(test)) else { return };
+fn a_message_goes_to_all_that_can_be_reached_and_to_one_who_is_added_on_the_way() {
+    let Some(()) = drive("a_message_goes_to_all_that_can_be_reached_and_to_one_who_is_added_on_the_way") else {
+        return;
+    };
     let text = source("ros2/deliver.lrp");
     let (mut robot, mut lrp) = both(&text);
     block(&mut robot, 5.5, -1.0);
@@ -138,19 +143,35 @@ fn a_message_goes_to_each_place_but_for_what_is_blocked_and_to_one_that_is_added
 }
 
 #[test]
-fn the_robot_halts_on_the_way_when_lrp_ends_and_when_it_is_killed() {
-    let test = "navigation::the_robot_halts_on_the_way_when_lrp_ends_and_when_it_is_killed";
-    let Some(_) = peers::navigation().and_then(|_| enter(test)) else { return };
-    for signal in ["TERM", "KILL"] {
-        let (mut robot, mut lrp) = both(&source("ros2/deliver.lrp"));
+fn the_robot_halts_on_the_way_when_the_program_begins_again_lrp_ends_or_is_killed() {
+    let Some(()) = drive("the_robot_halts_on_the_way_when_the_program_begins_again_lrp_ends_or_is_killed") else {
+        return;
+    };
+    let text = source("ros2/deliver.lrp");
+    let again = changed(&text, "stop = stop + 1", "stop = 1 + stop");
+    let ends: [(&str, &dyn Fn(&mut Program)); 3] = [
+        ("an edit of what it does", &|lrp| {
+            lrp.save(&again);
+            lrp.until("restart", |_| true);
+        }),
+        ("SIGTERM", &|lrp| send("TERM", lrp)),
+        ("SIGKILL", &|lrp| send("KILL", lrp)),
+    ];
+    for (what, end) in ends {
+        println!("after {what}");
+        let (mut robot, mut lrp) = both(&text);
         // So slow that it doesn't get there.
         robot.tell(json!({ "do": "drive_at", "velocity": 0.01 }));
         tell(&mut robot, "/order", "lunch!");
         let far = goal(&mut robot);
         lrp.until("reply", |record| record["done"] == false);
-        let killed = Command::new("kill").args(["-s", signal]).arg(lrp.id().to_string()).status().expect("kill");
-        assert!(killed.success());
-        assert_eq!(robot.until("cancel")["cancel"], far, "after {signal}");
+        end(&mut lrp);
+        assert_eq!(robot.until("cancel")["cancel"], far);
         robot.until("halted");
     }
+}
+
+fn send(signal: &str, lrp: &Program) {
+    let sent = Command::new("kill").args(["-s", signal]).arg(lrp.id().to_string()).status().expect("kill");
+    assert!(sent.success());
 }

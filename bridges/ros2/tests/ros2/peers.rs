@@ -13,7 +13,8 @@ pub fn python(program: &str) -> Option<Command> {
 
 /// A behaviour of those that come with lrp, or what is there with them.
 pub fn behavior(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../behaviors").join(name)
+    let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).expect("the workspace");
+    workspace.join("behaviors").join(name)
 }
 
 /// The robot that is driven as Nav2 does it. Nav2's interfaces are in no package of Python's: they are made of ours.
