@@ -5,7 +5,8 @@
 
 use std::collections::BTreeSet;
 use std::env::{split_paths, var, var_os};
-use std::fs::read;
+use std::ffi::OsString;
+use std::fs::{read, read_dir};
 use std::io::{Write, stderr};
 use std::path::{Path, PathBuf};
 use std::sync::{LazyLock, Mutex};
@@ -23,6 +24,12 @@ pub fn file(path: &str) -> Option<PathBuf> {
 /// The Python that has the packages of a list, as `ros2`.
 pub fn python(list: &str) -> Option<PathBuf> {
     WANTED.accept(&format!("Python with {list}.txt"), HERE.python(list))
+}
+
+/// The same, where it also has the interfaces that a folder defines now.
+pub fn python_with(list: &str, definitions: &Path) -> Option<PathBuf> {
+    let what = format!("Python with {list}.txt and {}", definitions.display());
+    WANTED.accept(&what, HERE.python_with(list, definitions))
 }
 
 static HERE: LazyLock<Places> = LazyLock::new(Places::of_environment);
@@ -56,6 +63,28 @@ impl Places {
         let wanted = read(Path::new(env!("CARGO_MANIFEST_DIR")).join(list).with_extension("txt")).ok()?;
         (read(home.join("installed.txt")).ok()? == wanted).then(|| home.join("bin/python"))
     }
+
+    /// None also where its interfaces were made of other definitions.
+    pub fn python_with(&self, list: &str, definitions: &Path) -> Option<PathBuf> {
+        let made = self.folder.join(list).join("interfaces");
+        self.python(list).filter(|_| are_alike(&made, definitions))
+    }
+}
+
+/// Whether two files, or all in two folders, read the same.
+fn are_alike(one: &Path, other: &Path) -> bool {
+    match (names(one), names(other)) {
+        (Some(names), Some(others)) => {
+            names == others && names.iter().all(|name| are_alike(&one.join(name), &other.join(name)))
+        }
+        (None, None) => read(one).is_ok_and(|text| read(other).is_ok_and(|other| other == text)),
+        _ => false,
+    }
+}
+
+/// What a folder has in it.
+fn names(folder: &Path) -> Option<BTreeSet<OsString>> {
+    Some(read_dir(folder).ok()?.flatten().map(|entry| entry.file_name()).collect())
 }
 
 /// What it means that a peer is missing.

@@ -33,6 +33,26 @@ fn python_is_there_once_it_has_what_the_list_says_now() {
 }
 
 #[test]
+fn interfaces_are_there_once_they_are_made_of_what_is_defined_now() {
+    let (places, folder) = places();
+    let (home, defined) = (folder.path().join("serial"), folder.path().join("defined"));
+    let made = home.join("interfaces");
+    for root in [&defined, &made] {
+        create_dir_all(root.join("nav/action")).expect("a folder");
+        write(root.join("nav/action/Go.action"), "float32 x").expect("a definition");
+    }
+    assert_eq!(places.python_with("serial", &defined), None);
+    copy(Path::new(env!("CARGO_MANIFEST_DIR")).join("serial.txt"), home.join("installed.txt")).expect("a list");
+    assert_eq!(places.python_with("serial", &defined), Some(home.join("bin/python")));
+    write(defined.join("nav/action/Go.action"), "float64 x").expect("a definition");
+    assert_eq!(places.python_with("serial", &defined), None);
+    copy(made.join("nav/action/Go.action"), defined.join("nav/action/Go.action")).expect("a definition");
+    write(defined.join("nav/action/Come.action"), "").expect("a definition");
+    assert_eq!(places.python_with("serial", &defined), None);
+    assert_eq!(places.python_with("serial", &folder.path().join("nowhere")), None);
+}
+
+#[test]
 fn one_that_is_here_is_used_unless_none_is_wanted() {
     let socat = Some(PathBuf::from("/usr/bin/socat"));
     assert_eq!(Wanted::IfHere.accept("socat", socat.clone()), socat);

@@ -202,9 +202,9 @@ class Peer(Node):
             say(graph=node, error="no such node")
 
 
-def main():
+def main(kind=Peer):
     rclpy.init()
-    peer = Peer(sys.argv[1] if len(sys.argv) > 1 else "peer", sys.argv[2] if len(sys.argv) > 2 else "/")
+    peer = kind(sys.argv[1] if len(sys.argv) > 1 else "peer", sys.argv[2] if len(sys.argv) > 2 else "/")
     executor = MultiThreadedExecutor(num_threads=4)
     executor.add_node(peer)
     threading.Thread(target=executor.spin, daemon=True).start()
@@ -217,4 +217,5 @@ def main():
     rclpy.shutdown()
 
 
-main()
+if __name__ == "__main__":
+    main()

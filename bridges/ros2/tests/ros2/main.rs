@@ -6,6 +6,7 @@ mod definitions;
 mod figures;
 mod forms;
 mod graph;
+mod navigation;
 mod peers;
 mod programs;
 mod topics;

@@ -11,6 +11,18 @@ pub fn python(program: &str) -> Option<Command> {
     Some(command)
 }
 
+/// A behaviour of those that come with lrp, or what is there with them.
+pub fn behavior(name: &str) -> PathBuf {
+    let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).ancestors().nth(2).expect("the workspace");
+    workspace.join("behaviors").join(name)
+}
+
+/// The robot that is driven as Nav2 does it. Nav2's interfaces are in no package of Python's: they are made of ours.
+pub fn navigation() -> Option<Command> {
+    lrp_peers::python_with("ros2", &behavior("ros2/interfaces"))?;
+    python("navigation.py")
+}
+
 /// The `share` folder of the ROS that the peers are.
 pub fn share() -> Option<PathBuf> {
     let python = lrp_peers::python("ros2")?;
