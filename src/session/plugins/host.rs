@@ -15,6 +15,7 @@ type Main = extern "C" fn(RawFd, RawFd) -> i32;
 
 /// Until lrp closes the conversation.
 pub fn host(path: &Path) -> ExitCode {
+    share_one_heap();
     match load(path).and_then(|library| speak(&library)) {
         Ok(code) => ExitCode::from(code),
         Err(why) => {
@@ -22,6 +23,15 @@ pub fn host(path: &Path) -> ExitCode {
             let _ = writeln!(stderr(), "{}: {why}", path.display());
             ExitCode::FAILURE
         }
+    }
+}
+
+/// Of a heap for each of a bridge's threads, most would be holes.
+fn share_one_heap() {
+    #[cfg(target_env = "gnu")]
+    // SAFETY: there is no other thread yet.
+    unsafe {
+        libc::mallopt(libc::M_ARENA_MAX, 1);
     }
 }
 

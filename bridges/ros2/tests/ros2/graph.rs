@@ -101,3 +101,20 @@ fn logs_the_clock_and_states_pass() {
     }
     panic!("no time");
 }
+
+/// To a group, each message would come twice: to it, and to us.
+#[test]
+fn messages_are_not_to_be_sent_to_a_group() {
+    let Some(()) = enter("graph::messages_are_not_to_be_sent_to_a_group") else { return };
+    let ports = |domain: u16| {
+        let _lrp = bridge(json!({ "domain": domain }));
+        let sockets = std::fs::read_to_string("/proc/net/udp").expect("sockets");
+        let port = |line: &str| u16::from_str_radix(line.split_whitespace().nth(1)?.rsplit(':').next()?, 16).ok();
+        sockets.lines().filter_map(port).collect::<Vec<u16>>()
+    };
+    for domain in [0, 7] {
+        let (ports, first) = (ports(domain), 7400 + 250 * domain);
+        let [found, messages] = [first, first + 1].map(|port| ports.contains(&port));
+        assert!(found && !messages, "{ports:?}");
+    }
+}
