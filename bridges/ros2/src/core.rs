@@ -77,7 +77,7 @@ impl Core {
     /// Changes what differs. Another network or name is another node: not for this.
     pub fn configure(&mut self, config: Config) -> Result<(), String> {
         let Core { node, clients, .. } = self;
-        clients.mapping = config.mapping;
+        node.mapping = config.mapping;
         node.types.look_in(config.interfaces.clone());
         self.inputs.configure(node, &config.subscribe);
         self.outputs.configure(node, &config.publish);

@@ -2,6 +2,7 @@
 
 mod calls;
 mod codec;
+mod cyclone;
 mod definitions;
 mod figures;
 mod forms;
