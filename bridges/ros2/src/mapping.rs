@@ -5,10 +5,7 @@ use rustdds::SampleIdentity;
 
 use crate::cdr::Order;
 use crate::dds::{Raw, Sample, Writer};
-use crate::graph::Guid;
-
-/// Vendors write their number into each guid.
-const CYCLONE: [u8; 2] = [1, 16];
+use crate::graph::{Guid, is_cyclone};
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Mapping {
@@ -21,7 +18,7 @@ pub enum Mapping {
 impl Mapping {
     /// As the vendor of an endpoint does it.
     pub fn of(guid: Guid) -> Mapping {
-        if guid.starts_with(&CYCLONE) { Mapping::Cyclone } else { Mapping::FastDds }
+        if is_cyclone(&guid) { Mapping::Cyclone } else { Mapping::FastDds }
     }
 }
 
@@ -65,27 +62,40 @@ impl Header {
 
 /// Whom a reply is for.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub enum Asker {
-    FastDds(SampleIdentity),
-    Cyclone(Header),
+pub struct Asker {
+    /// One of its endpoints.
+    pub guid: Guid,
+    request: Identity,
+}
+
+/// Which request is answered, as the asker wants to be told.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Identity {
+    Beside(SampleIdentity),
+    InFront(Header),
 }
 
 impl Asker {
-    pub fn answer(self, writer: &Writer, bytes: Vec<u8>) -> Result<(), String> {
-        match self {
-            Asker::FastDds(identity) => writer.write_related(bytes, Some(identity)),
-            Asker::Cyclone(header) => writer.write(header.before(&bytes)),
-        }
-        .map(|_| ())
+    pub fn answer(&self, writer: &Writer, bytes: Vec<u8>) -> Result<(), String> {
+        let written = match self.request {
+            Identity::Beside(identity) => writer.write_related(bytes, Some(identity)),
+            Identity::InFront(header) => writer.write(header.before(&bytes)),
+        };
+        written.map(|_| ())
     }
 }
 
 /// Who asks, and what. Clients of several vendors may ask the same service.
 pub fn request(sample: Sample, mapping: Option<Mapping>) -> Option<(Asker, Raw)> {
-    match mapping.unwrap_or_else(|| Mapping::of(sample.writer_guid().to_bytes())) {
-        Mapping::FastDds => Some((Asker::FastDds(identity(&sample)), sample.sample)),
-        Mapping::Cyclone => Header::read(&sample.sample).map(|(header, raw)| (Asker::Cyclone(header), raw)),
-    }
+    let guid = sample.writer_guid().to_bytes();
+    let (request, raw) = match mapping.unwrap_or_else(|| Mapping::of(guid)) {
+        Mapping::FastDds => (Identity::Beside(identity(&sample)), sample.sample),
+        Mapping::Cyclone => {
+            let (header, raw) = Header::read(&sample.sample)?;
+            (Identity::InFront(header), raw)
+        }
+    };
+    Some((Asker { guid, request }, raw))
 }
 
 /// Some clients say that another one than who wrote wants the reply.

@@ -69,5 +69,7 @@ fn addresses(interface: &str) -> Vec<IpAddr> {
 }
 
 fn interfaces() -> Vec<String> {
-    netdev::get_interfaces().into_iter().map(|known| known.name).collect()
+    let mut names: Vec<String> = netdev::get_interfaces().into_iter().map(|known| known.name).collect();
+    names.sort();
+    names
 }

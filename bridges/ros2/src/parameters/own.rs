@@ -18,6 +18,9 @@ use crate::types::Struct;
 /// How long the program may take to take over what was set.
 const LONGEST_SET: Duration = Duration::from_secs(2);
 
+/// How long an answer waits for somebody who hears it.
+const LONGEST_HUSH: Duration = Duration::from_secs(1);
+
 /// What others may ask of our parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
@@ -59,6 +62,14 @@ struct Service {
     response: Arc<Struct>,
     reader: ReaderId,
     writer: Writer,
+    /// To those who can't hear yet.
+    answers: Vec<Answer>,
+}
+
+struct Answer {
+    to: Asker,
+    bytes: Vec<u8>,
+    until: Instant,
 }
 
 /// A request whose variables are being set.
@@ -87,7 +98,7 @@ impl Parameters {
             let response = node.find(&format!("rcl_interfaces/srv/{name}_Response"))?;
             let reader = node.reader(&service, Role::Request, &request.name, Qos::PARAMETERS)?;
             let writer = node.writer(&service, Role::Reply, &response.name, Qos::PARAMETERS)?;
-            self.services.push(Service { kind, request, response, reader, writer });
+            self.services.push(Service { kind, request, response, reader, writer, answers: Vec::new() });
         }
         Ok(())
     }
@@ -121,7 +132,7 @@ impl Parameters {
                 Kind::Set | Kind::SetAtomically => self.set(node, kind, to, &request),
                 _ => {
                     let response = self.read(kind, &request);
-                    self.services[at].answer(&response, to);
+                    self.services[at].answer(node, &response, to);
                 }
             }
         }
@@ -171,7 +182,7 @@ impl Parameters {
         });
         let parts = parts.collect();
         self.setting.push(Setting { kind, to, until: Instant::now() + LONGEST_SET, parts });
-        self.finish();
+        self.finish(node);
     }
 
     /// The variable and the value that a parameter stands for.
@@ -196,17 +207,17 @@ impl Parameters {
     }
 
     /// What the program made of a variable that was to be set.
-    pub fn answered(&mut self, id: u64, error: Option<String>) {
+    pub fn answered(&mut self, node: &Node, id: u64, error: Option<String>) {
         for part in self.setting.iter_mut().flat_map(|setting| &mut setting.parts) {
             if *part == Part::Asked(id) {
                 *part = Part::Done(error.map_or(Ok(()), Err));
                 break;
             }
         }
-        self.finish();
+        self.finish(node);
     }
 
-    pub fn tick(&mut self, now: Instant) {
+    pub fn tick(&mut self, node: &Node, now: Instant) {
         for setting in self.setting.iter_mut().filter(|setting| setting.until <= now) {
             for part in &mut setting.parts {
                 if let Part::Asked(_) = part {
@@ -214,11 +225,12 @@ impl Parameters {
                 }
             }
         }
-        self.finish();
+        self.finish(node);
+        self.services.iter_mut().for_each(|service| service.send(node, now));
     }
 
     /// Answers the requests all of whose parts are done.
-    fn finish(&mut self) {
+    fn finish(&mut self, node: &Node) {
         let is_done = |setting: &mut Setting| setting.parts.iter().all(|part| matches!(part, Part::Done(_)));
         for Setting { kind, to, parts, .. } in self.setting.extract_if(.., is_done) {
             let result = |part: &Part| match part {
@@ -232,16 +244,26 @@ impl Parameters {
                 }
                 _ => json!({ "results": parts.iter().map(result).collect::<Vec<_>>() }),
             };
-            if let Some(service) = self.services.iter().find(|service| service.kind == kind) {
-                service.answer(&response, to);
+            if let Some(service) = self.services.iter_mut().find(|service| service.kind == kind) {
+                service.answer(node, &response, to);
             }
         }
     }
 }
 
 impl Service {
-    fn answer(&self, response: &Value, to: Asker) {
-        if let Ok(bytes) = encode(&self.response, response) {
+    fn answer(&mut self, node: &Node, response: &Value, to: Asker) {
+        let Ok(bytes) = encode(&self.response, response) else { return };
+        let now = Instant::now();
+        self.answers.push(Answer { to, bytes, until: now + LONGEST_HUSH });
+        self.send(node, now);
+    }
+
+    /// A request may come before who hears the answer is found; what is sent then is lost.
+    fn send(&mut self, node: &Node, now: Instant) {
+        let own = self.writer.guid();
+        let is_due = |answer: &mut Answer| node.graph.is_matched_with(own, answer.to.guid) || answer.until <= now;
+        for Answer { to, bytes, .. } in self.answers.extract_if(.., is_due) {
             // Who asked may be gone.
             let _ = to.answer(&self.writer, bytes);
         }

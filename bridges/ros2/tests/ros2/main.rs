@@ -7,6 +7,7 @@ mod definitions;
 mod figures;
 mod forms;
 mod graph;
+mod networks;
 mod peers;
 mod programs;
 mod topics;
