@@ -78,7 +78,7 @@ pub fn settings() -> Vec<Setting> {
         setting("interfaces", "folder or folders with definitions, as PACKAGE/msg/NAME.msg", r#""interfaces""#),
         setting(
             "rmw",
-            "how services are mapped, fastrtps or cyclonedds; default: as the server does",
+            "how services are mapped, fastrtps or cyclonedds; default: as the other side does",
             r#""cyclonedds""#,
         ),
     ]

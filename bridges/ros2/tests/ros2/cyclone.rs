@@ -124,8 +124,10 @@ fn a_megabyte_passes_both_ways() {
 #[test]
 fn a_service_of_cyclone_is_called() {
     let Some(()) = enter("cyclone::a_service_of_cyclone_is_called") else { return };
-    let light = json!({ "service": "/light", "type": "std_srvs/srv/SetBool", "timeout": 10_000 });
-    let mut lrp = bridge(json!({ "services": { "light": light, "reset": "/reset" } }));
+    // Where much else is going on, finding each other takes its time.
+    let light = json!({ "service": "/light", "type": "std_srvs/srv/SetBool", "timeout": 30_000 });
+    let reset = json!({ "service": "/reset", "timeout": 30_000 });
+    let mut lrp = bridge(json!({ "services": { "light": light, "reset": reset } }));
     // Asked before it is known whose the server is.
     let early = lrp.call("light", vec![json!({ "data": true })]);
     let mut node = cyclone("lamp");
@@ -212,7 +214,7 @@ fn the_form_can_say_the_mapping() {
         let light = json!({ "service": "/light", "type": "std_srvs/srv/SetBool", "timeout": timeout });
         json!({ "services": { "light": light }, "rmw": rmw })
     };
-    let mut lrp = bridge(config("rmw_cyclonedds_cpp", 10_000));
+    let mut lrp = bridge(config("rmw_cyclonedds_cpp", 30_000));
     let light = lrp.call("light", vec![json!({ "data": true })]);
     assert_eq!(lrp.reply(light), Ok(json!({ "success": true, "message": "shines" })));
     call(&mut node, "list_parameters", "ListParameters", json!({}), json!({}));
