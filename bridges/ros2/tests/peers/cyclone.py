@@ -18,12 +18,9 @@ os.environ["CYCLONEDDS_URI"] = """<CycloneDDS><Domain>
 </Domain></CycloneDDS>"""
 
 from codec import cls, fill
-from cyclonedds._clayer import ddspy_write
 from cyclonedds.core import Policy, Qos
 from cyclonedds.domain import DomainParticipant
-from cyclonedds.idl import IdlStruct, make_idl_struct
-from cyclonedds.idl import types
-from cyclonedds.idl._support import Endianness
+from cyclonedds.idl import IdlStruct, make_idl_struct, types
 from cyclonedds.pub import DataWriter
 from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
@@ -136,6 +133,7 @@ class Peer:
         self.name = name
         self.participant = DomainParticipant()
         self.kept = {}
+        self.asked = 0
         self.readers, self.writers = [], []
         self.info = self.writer("ros_discovery_info", struct("rmw_dds_common/msg/ParticipantEntitiesInfo"),
                                 {"transient_local": True, "depth": 1})
@@ -197,14 +195,16 @@ class Peer:
 
         self.reader(f"rq{service}Request", mapped(f"{type}_Request"), answer, identity=identity)
 
-    def call(self, service, type, value, number=1, big_endian=False):
+    def call(self, service, type, value):
         kind = mapped(f"{type}_Request")
         identity = f"clientid= {service};"
         writer = self.writer(f"rq{service}Request", kind, identity=identity)
-        request = kind(Asker(writer.instance_handle % 2**64, number), *parts(filled(f"{type}_Request", value)))
+        self.asked += 1
+        asker = Asker(writer.instance_handle % 2**64, self.asked)
+        request = kind(asker, *parts(filled(f"{type}_Request", value)))
 
         def take(reply):
-            if reply.asker == request.asker:
+            if reply.asker == asker:
                 say(answer=service, value=seen(reply))
 
         reader = self.reader(f"rr{service}Reply", mapped(f"{type}_Response"), take, identity=identity)
@@ -212,8 +212,7 @@ class Peer:
         def ask():
             while not (writer.matched_sub and reader.matched_pub):
                 time.sleep(0.01)
-            order = Endianness.Big if big_endian else Endianness.Little
-            ddspy_write(writer._ref, request.serialize(endianness=order, use_version_2=False))
+            writer.write(request)
 
         threading.Thread(target=ask, daemon=True).start()
 

@@ -149,7 +149,7 @@ fn a_service_of_cyclone_is_called() {
         "reply": { "success": true, "message": "shines" } }));
     assert_eq!(asked(&mut node, "/light"), json!({ "data": true }));
     assert_eq!(lrp.reply(early), Ok(json!({ "success": true, "message": "shines" })));
-    // Several at once, each with the reply to it.
+    // Several at once.
     let calls = [true, false, true].map(|data| lrp.call("light", vec![json!({ "data": data })]));
     for (call, data) in calls.into_iter().zip([true, false, true]) {
         assert_eq!(asked(&mut node, "/light"), json!({ "data": data }));
@@ -157,11 +157,11 @@ fn a_service_of_cyclone_is_called() {
     }
 }
 
-fn call(node: &mut Node, service: &str, kind: &str, value: Value, more: Value) {
-    let mut order = json!({ "do": "call", "service": format!("/lrp/{service}"),
-        "type": format!("rcl_interfaces/srv/{kind}"), "value": value });
-    order.as_object_mut().expect("fields").extend(more.as_object().cloned().unwrap_or_default());
-    node.tell(order);
+fn call(node: &mut Node, service: &str, kind: &str, value: Value) {
+    node.tell(
+        json!({ "do": "call", "service": format!("/lrp/{service}"), "type": format!("rcl_interfaces/srv/{kind}"),
+        "value": value }),
+    );
 }
 
 fn answer(node: &mut Node, service: &str) -> Value {
@@ -176,19 +176,19 @@ fn clients_of_both_vendors_read_and_set_our_parameters() {
     let variable = lrp_bridge::Variable { path: "speed".into(), value: json!(0.5) };
     lrp.order(Order::Variables { variables: vec![variable] });
     let (mut theirs, mut ros) = (cyclone("tuner"), Node::start("other"));
-    let read = |node: &mut Node, more: Value| {
-        call(node, "get_parameters", "GetParameters", json!({ "names": ["speed", "none"] }), more);
+    let read = |node: &mut Node| {
+        call(node, "get_parameters", "GetParameters", json!({ "names": ["speed", "none"] }));
         let values = answer(node, "get_parameters")["values"].clone();
         assert_eq!((&values[0]["type"], &values[0]["double_value"]), (&json!(3), &json!(0.5)));
         assert_eq!(values[1]["type"], json!(0));
     };
-    read(&mut theirs, json!({ "number": 7 }));
-    read(&mut ros, json!({}));
-    read(&mut theirs, json!({ "number": 8, "big_endian": true }));
+    read(&mut theirs);
+    read(&mut ros);
+    read(&mut theirs);
     let set = |lrp: &mut Peer, node: &mut Node, value: f64, error: Option<&str>| {
         let value = json!({ "type": 3, "double_value": value });
         let parameters = json!({ "parameters": [{ "name": "speed", "value": value }] });
-        call(node, "set_parameters", "SetParameters", parameters, json!({}));
+        call(node, "set_parameters", "SetParameters", parameters);
         let (id, set) = lrp.until("set", |event| match event {
             Event::Set { id, value, .. } => Some((*id, value.clone())),
             _ => None,
@@ -217,7 +217,7 @@ fn the_form_can_say_the_mapping() {
     let mut lrp = bridge(config("rmw_cyclonedds_cpp", 30_000));
     let light = lrp.call("light", vec![json!({ "data": true })]);
     assert_eq!(lrp.reply(light), Ok(json!({ "success": true, "message": "shines" })));
-    call(&mut node, "list_parameters", "ListParameters", json!({}), json!({}));
+    call(&mut node, "list_parameters", "ListParameters", json!({}));
     assert_eq!(answer(&mut node, "list_parameters")["result"]["names"], json!([]));
     // The other one is not understood.
     lrp.configure(config("fastrtps", 500));
