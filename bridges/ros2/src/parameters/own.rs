@@ -19,7 +19,7 @@ use crate::types::Struct;
 const LONGEST_SET: Duration = Duration::from_secs(2);
 
 /// How long an answer waits for somebody who hears it.
-const LONGEST_HUSH: Duration = Duration::from_secs(1);
+const LONGEST_WAIT: Duration = Duration::from_secs(1);
 
 /// What others may ask of our parameters.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -255,7 +255,7 @@ impl Service {
     fn answer(&mut self, node: &Node, response: &Value, to: Asker) {
         let Ok(bytes) = encode(&self.response, response) else { return };
         let now = Instant::now();
-        self.answers.push(Answer { to, bytes, until: now + LONGEST_HUSH });
+        self.answers.push(Answer { to, bytes, until: now + LONGEST_WAIT });
         self.send(node, now);
     }
 
