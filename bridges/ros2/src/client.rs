@@ -4,27 +4,19 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Instant;
 
-use rustdds::SampleIdentity;
 use serde_json::Value;
 
-use crate::config::Mapping;
 use crate::dds::qos::Qos;
-use crate::dds::{Raw, ReaderId, Sample, Writer};
-use crate::graph::{Guid, Side};
+use crate::dds::{ReaderId, Sample, Writer};
+use crate::graph::Side;
+use crate::mapping::{self, Header, Mapping};
 use crate::names::Role;
 use crate::node::{Node, decode, encode};
 use crate::types::Struct;
 
-/// Vendors write their number into each guid.
-const CYCLONE: [u8; 2] = [1, 16];
-
-/// Cyclone's mapping puts the client's id and the request's number in front.
-pub const HEADER: usize = 16;
-
 #[derive(Default)]
 pub struct Clients {
     clients: BTreeMap<String, Client>,
-    pub mapping: Option<Mapping>,
 }
 
 /// What a reply is for.
@@ -120,17 +112,15 @@ impl Clients {
         let Some(client) = self.clients.get_mut(service) else { return Ok(()) };
         let bytes = encode(&client.request, message)?;
         client.waiting.push(Waiting { bytes, asked: Asked { then, until } });
-        client.send(node, service, self.mapping)
+        client.send(node, service)
     }
 
     /// Whether a reader is a client's, and what has come of its requests.
     pub fn receive(&mut self, node: &mut Node, reader: ReaderId) -> Option<Vec<Outcome>> {
-        let mapping = self.mapping;
-        let (service, client) = self.clients.iter_mut().find(|(_, client)| client.replies == reader)?;
-        let mapping = mapping.unwrap_or_else(|| mapping_of(node, service));
+        let client = self.clients.values_mut().find(|client| client.replies == reader)?;
         let mut outcomes = Vec::new();
         while let Some(sample) = node.take(reader) {
-            outcomes.extend(client.reply(sample, mapping));
+            outcomes.extend(client.reply(sample, node.mapping));
         }
         Some(outcomes)
     }
@@ -142,7 +132,7 @@ impl Clients {
             if client.waiting.is_empty() && client.asked.is_empty() {
                 continue;
             }
-            if let Err(why) = client.send(node, service, self.mapping) {
+            if let Err(why) = client.send(node, service) {
                 outcomes.extend(client.waiting.drain(..).map(|waiting| (waiting.asked.then, Err(why.clone()))));
             }
             let is_late = |asked: &Asked| asked.until.is_some_and(|until| until <= now);
@@ -180,17 +170,17 @@ impl Client {
         node.graph.is_matched(self.writer.guid()) && node.is_heard(self.replies)
     }
 
-    fn send(&mut self, node: &Node, service: &str, mapping: Option<Mapping>) -> Result<(), String> {
+    fn send(&mut self, node: &Node, service: &str) -> Result<(), String> {
         if !self.is_matched(node) {
             return Ok(());
         }
-        let mapping = mapping.unwrap_or_else(|| mapping_of(node, service));
+        let mapping = node.mapping.unwrap_or_else(|| mapping_of(node, service));
         for Waiting { bytes, asked } in self.waiting.drain(..) {
             let number = match mapping {
                 Mapping::FastDds => i64::from(self.writer.write(bytes)?.sequence_number),
                 Mapping::Cyclone => {
                     self.next += 1;
-                    self.writer.write([header(self.writer.guid(), self.next).as_slice(), &bytes].concat())?;
+                    self.writer.write(Header::new(self.writer.guid(), self.next).before(&bytes))?;
                     self.next
                 }
             };
@@ -199,18 +189,8 @@ impl Client {
         Ok(())
     }
 
-    fn reply(&mut self, sample: Sample, mapping: Mapping) -> Option<Outcome> {
-        let own = self.writer.guid();
-        let (number, raw) = match mapping {
-            Mapping::FastDds => {
-                let SampleIdentity { writer_guid, sequence_number } = sample.related_sample_identity()?;
-                (writer_guid.to_bytes() == own).then_some((i64::from(sequence_number), sample.sample))?
-            }
-            Mapping::Cyclone => {
-                let (client, number, raw) = behind_header(sample.sample)?;
-                (client == header(own, 0)[..8]).then_some((number, raw))?
-            }
-        };
+    fn reply(&mut self, sample: Sample, mapping: Option<Mapping>) -> Option<Outcome> {
+        let (number, raw) = mapping::reply(sample, self.writer.guid(), mapping)?;
         let asked = self.asked.remove(&number)?;
         Some((asked.then, decode(&self.response, raw)))
     }
@@ -218,23 +198,9 @@ impl Client {
 
 /// As the server does it, which its vendor tells.
 fn mapping_of(node: &Node, service: &str) -> Mapping {
-    let mut servers = node.graph.endpoints(service, Role::Request);
-    match servers.any(|(guid, endpoint)| endpoint.side == Side::Reads && guid[..2] == CYCLONE) {
+    let mut servers = node.graph.endpoints(service, Role::Request).filter(|(_, endpoint)| endpoint.side == Side::Reads);
+    match servers.any(|(guid, _)| Mapping::of(*guid) == Mapping::Cyclone) {
         true => Mapping::Cyclone,
         false => Mapping::FastDds,
     }
-}
-
-fn header(guid: Guid, number: i64) -> [u8; HEADER] {
-    let mut header = [0; HEADER];
-    // The end of a guid differs within a participant, its middle among them.
-    header[..8].copy_from_slice(&guid[8..]);
-    header[8..].copy_from_slice(&number.to_le_bytes());
-    header
-}
-
-fn behind_header(raw: Raw) -> Option<([u8; 8], i64, Raw)> {
-    let (client, rest) = raw.bytes.split_first_chunk::<8>()?;
-    let (number, _) = rest.split_first_chunk::<8>()?;
-    Some((*client, i64::from_le_bytes(*number), Raw { bytes: raw.bytes.slice(HEADER..), order: raw.order }))
 }

@@ -77,7 +77,7 @@ impl Core {
     /// Changes what differs. Another network or name is another node: not for this.
     pub fn configure(&mut self, config: Config) -> Result<(), String> {
         let Core { node, clients, .. } = self;
-        clients.mapping = config.mapping;
+        node.mapping = config.mapping;
         node.types.look_in(config.interfaces.clone());
         self.inputs.configure(node, &config.subscribe);
         self.outputs.configure(node, &config.publish);
@@ -117,7 +117,7 @@ impl Core {
         self.settle(outcomes);
         let late = self.actions.tick(&mut self.node, &mut self.clients, now);
         self.reply(late);
-        self.parameters.tick(now);
+        self.parameters.tick(&self.node, now);
         self.follow();
         self.ask_for_types(now);
         self.outputs.greet(&self.node, &self.system.time());
@@ -301,7 +301,7 @@ impl Core {
             News::Log { level, message, state } => {
                 self.system.log(&self.node, level, &message, state.as_deref().unwrap_or_default());
             }
-            News::Answer { id, error } => self.parameters.answered(id, error),
+            News::Answer { id, error } => self.parameters.answered(&self.node, id, error),
         }
     }
 }

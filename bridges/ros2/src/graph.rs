@@ -2,6 +2,7 @@
 //! what discovery tells; knows nothing of messages.
 
 use std::collections::{BTreeMap, BTreeSet};
+use std::time::{Duration, Instant};
 
 use lrp_bridge::Found;
 use rustdds::{DomainParticipantStatusEvent as Event, EndpointDescription, QosPolicies};
@@ -14,6 +15,12 @@ pub type Guid = [u8; 16];
 /// The first bytes of a guid are its participant's.
 const PREFIX: usize = 12;
 
+/// And the first of those are its vendor's.
+const CYCLONE: [u8; 2] = [1, 16];
+
+/// Cyclone drops what comes before it has found who sends it, which may take this much longer than finding it took us.
+const CYCLONES_TURN: Duration = Duration::from_millis(100);
+
 #[derive(Default)]
 pub struct Graph {
     /// This participant's prefix.
@@ -21,8 +28,8 @@ pub struct Graph {
     endpoints: BTreeMap<Guid, Endpoint>,
     /// By participant: its nodes.
     nodes: BTreeMap<[u8; PREFIX], Vec<Node>>,
-    /// Endpoints of ours, and of others that they talk to.
-    matches: BTreeMap<Guid, BTreeSet<Guid>>,
+    /// Endpoints of ours, and of others that they talk to, since when.
+    matches: BTreeMap<Guid, BTreeMap<Guid, Instant>>,
     version: u64,
 }
 
@@ -74,7 +81,7 @@ impl Graph {
             Event::ParticipantLost { id, .. } => self.left(prefix_of(id.as_ref())),
             Event::RemoteReaderMatched { local_writer: ours, remote_reader: theirs }
             | Event::RemoteWriterMatched { local_reader: ours, remote_writer: theirs } => {
-                self.matches.entry(ours.to_bytes()).or_default().insert(theirs.to_bytes());
+                self.matches.entry(ours.to_bytes()).or_default().insert(theirs.to_bytes(), Instant::now());
             }
             Event::RemoteReaderQosIncompatible { local_writer, remote_reader, requested_qos, offered_qos } => {
                 return Some(Incompatible {
@@ -125,7 +132,7 @@ impl Graph {
 
     fn left(&mut self, participant: [u8; PREFIX]) {
         self.endpoints.retain(|guid, _| prefix(*guid) != participant);
-        self.matches.values_mut().for_each(|theirs| theirs.retain(|guid| prefix(*guid) != participant));
+        self.matches.values_mut().for_each(|theirs| theirs.retain(|guid, _| prefix(*guid) != participant));
         self.nodes.remove(&participant);
         self.version += 1;
     }
@@ -153,7 +160,14 @@ impl Graph {
 
     /// Whether an endpoint of ours has somebody to talk to.
     pub fn is_matched(&self, ours: Guid) -> bool {
-        self.matches.get(&ours).is_some_and(|theirs| !theirs.is_empty())
+        let is_ready = |(guid, since): (&Guid, &Instant)| !is_cyclone(guid) || since.elapsed() >= CYCLONES_TURN;
+        self.matches.get(&ours).is_some_and(|theirs| theirs.iter().any(is_ready))
+    }
+
+    /// Whether an endpoint of ours can talk to the participant that has one of others'.
+    pub fn is_matched_with(&self, ours: Guid, theirs: Guid) -> bool {
+        let is_there = |guid: &Guid| prefix(*guid) == prefix(theirs);
+        self.matches.get(&ours).is_some_and(|matched| matched.keys().any(is_there))
     }
 
     /// The node that an endpoint belongs to.
@@ -246,6 +260,10 @@ fn hash(user_data: &[u8]) -> Option<String> {
     let start = text.find("typehash=")? + "typehash=".len();
     let hash: String = text[start..].chars().take_while(|char| char.is_ascii_alphanumeric() || *char == '_').collect();
     hash.starts_with("RIHS01_").then_some(hash)
+}
+
+pub fn is_cyclone(guid: &Guid) -> bool {
+    guid.starts_with(&CYCLONE)
 }
 
 fn prefix(guid: Guid) -> [u8; PREFIX] {

@@ -9,6 +9,7 @@ mod config;
 mod core;
 mod dds;
 mod graph;
+mod mapping;
 mod names;
 mod node;
 mod offer;

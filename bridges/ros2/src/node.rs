@@ -12,6 +12,7 @@ use crate::cdr::{Order, read, write};
 use crate::dds::qos::Qos;
 use crate::dds::{Link, Raw, ReaderId, Sample, Writer};
 use crate::graph::{self, Graph, Guid};
+use crate::mapping::Mapping;
 use crate::names::{Names, Role, join, to_dds, type_to_dds};
 use crate::types::{Registry, Struct};
 
@@ -26,6 +27,8 @@ pub struct Node {
     pub names: Names,
     pub graph: Graph,
     pub types: Registry,
+    /// How requests and replies are told apart, where the form says it; else as the other side does it.
+    pub mapping: Option<Mapping>,
     /// Types that nobody here knows, to be asked for.
     pub wanted: BTreeMap<String, Wanted>,
     link: Link,
@@ -58,6 +61,7 @@ impl Node {
             robot,
             names,
             types,
+            mapping: None,
             wanted: BTreeMap::new(),
             link,
             readers: BTreeMap::new(),

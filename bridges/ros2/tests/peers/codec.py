@@ -56,6 +56,26 @@ def class_of(kind):
     return getattr(getattr(module, action), part)
 
 
+def cls(name):
+    package, family, short = name.split("/")
+    return class_of(NamespacedType([package, family], short))
+
+
+def fill(message, fields):
+    kinds = dict(zip(message.get_fields_and_field_types(), message.SLOT_TYPES))
+    for name, value in fields.items():
+        kind = kinds[name]
+        if isinstance(kind, NamespacedType):
+            fill(getattr(message, name), value)
+        elif isinstance(kind, AbstractNestedType) and isinstance(kind.value_type, NamespacedType):
+            setattr(message, name, [fill(class_of(kind.value_type)(), item) for item in value])
+        elif isinstance(kind, BasicType) and kind.typename == "octet":
+            setattr(message, name, bytes([value]))
+        else:
+            setattr(message, name, value)
+    return message
+
+
 def value_of(kind):
     """Anything that a field can hold."""
     if isinstance(kind, BasicType):

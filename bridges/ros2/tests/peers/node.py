@@ -6,13 +6,13 @@ import threading
 import time
 
 import rclpy
-from codec import class_of, seen
+from codec import cls, fill, seen
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import MultiThreadedExecutor
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
-from rosidl_parser.definition import AbstractNestedType, BasicType, NamespacedType
+from rosidl_parser.definition import NamespacedType
 
 # What is nested is looked at by its own fields.
 ANY = NamespacedType(["", ""], "")
@@ -22,26 +22,6 @@ lock = threading.Lock()
 def say(**what):
     with lock:
         print(json.dumps(what), flush=True)
-
-
-def cls(name):
-    package, family, short = name.split("/")
-    return class_of(NamespacedType([package, family], short))
-
-
-def fill(message, fields):
-    kinds = dict(zip(message.get_fields_and_field_types(), message.SLOT_TYPES))
-    for name, value in fields.items():
-        kind = kinds[name]
-        if isinstance(kind, NamespacedType):
-            fill(getattr(message, name), value)
-        elif isinstance(kind, AbstractNestedType) and isinstance(kind.value_type, NamespacedType):
-            setattr(message, name, [fill(class_of(kind.value_type)(), item) for item in value])
-        elif isinstance(kind, BasicType) and kind.typename == "octet":
-            setattr(message, name, bytes([value]))
-        else:
-            setattr(message, name, value)
-    return message
 
 
 def profile(said):

@@ -4,7 +4,7 @@ use lrp_bridge::{Bridge, Problem};
 use lrp_bridge_ros2::Ros2;
 use serde_json::{Value, json};
 
-fn problems(config: Value) -> Vec<String> {
+pub fn problems(config: Value) -> Vec<String> {
     let told = |problem: Problem| {
         format!("{}: {} ({})", problem.key.unwrap_or_default(), problem.message, problem.help.unwrap_or_default())
     };

@@ -2,11 +2,13 @@
 
 mod calls;
 mod codec;
+mod cyclone;
 mod definitions;
 mod figures;
 mod forms;
 mod graph;
 mod navigation;
+mod networks;
 mod peers;
 mod programs;
 mod topics;

@@ -1,5 +1,7 @@
 //! Topics with a real ROS on the other side: both ways, found types, QoS, and what goes wrong with them.
 
+use std::time::{Duration, SystemTime};
+
 use lrp_bridge::{Event, Level, Peer};
 use lrp_bridge_ros2::Ros2;
 use serde_json::{Value, json};
@@ -61,6 +63,40 @@ fn what_is_published_arrives_and_our_node_is_seen() {
     let (level, said) = logged(&mut lrp, "output");
     assert_eq!(level, Level::Error);
     assert_eq!(said, "output `move`: `linear`: geometry_msgs/msg/Vector3 has no field `w`, its fields are: x, y, z");
+}
+
+#[test]
+fn a_halt_with_a_header_tells_the_time() {
+    let Some(()) = enter("topics::a_halt_with_a_header_tells_the_time") else { return };
+    let mut node = Node::start("base");
+    node.tell(json!({ "do": "subscribe", "topic": "/cmd_vel", "type": "geometry_msgs/msg/TwistStamped" }));
+    let config = |simulated: bool| json!({ "use_sim_time": simulated, "publish": { "move": "/cmd_vel geometry_msgs/msg/TwistStamped" } });
+    let mut lrp = bridge(config(false));
+    let zero = json!({ "linear": { "x": 0.0, "y": 0.0, "z": 0.0 }, "angular": { "x": 0.0, "y": 0.0, "z": 0.0 } });
+    let is_halt = |heard: &Value| heard["value"]["twist"] == zero;
+    let today = |heard: &Value| {
+        let now = SystemTime::now().duration_since(SystemTime::UNIX_EPOCH).expect("a clock").as_secs();
+        let stamp = heard["value"]["header"]["stamp"]["sec"].as_u64().expect("a stamp");
+        is_halt(heard) && stamp + 60 > now && stamp <= now
+    };
+    let first = node.until("heard");
+    assert!(today(&first), "{first}");
+    lrp.send("move", json!({ "twist": { "angular": { "z": 0.2 } } }));
+    assert_eq!(node.until("heard")["value"]["twist"]["angular"]["z"], json!(0.2));
+    lrp.order(lrp_bridge::Order::Stop);
+    let halt = node.until("heard");
+    assert!(today(&halt), "{halt}");
+    // A simulator's, where its clock counts.
+    lrp.configure(config(true));
+    let time = (0..100).find_map(|_| {
+        node.tell(json!({ "do": "clock", "sec": 12, "nanosec": 500_000_000 }));
+        lrp.event(Duration::from_millis(50)).filter(|event| matches!(event, Event::Time { .. }))
+    });
+    assert!(time.is_some(), "no time");
+    lrp.order(lrp_bridge::Order::Stop);
+    let halt = node.until("heard");
+    assert!(is_halt(&halt), "{halt}");
+    assert_eq!(halt["value"]["header"]["stamp"], json!({ "sec": 12, "nanosec": 500_000_000 }));
 }
 
 #[test]

@@ -18,6 +18,11 @@ const INSIDE: &str = "LRP_INSIDE_NETWORK";
 /// Runs a test of this binary again, in a network namespace of its own with nothing but loopback. Whether this is that run;
 /// none: it is over, or the peers are missing.
 pub fn enter(test: &str) -> Option<()> {
+    enter_with(test, &[])
+}
+
+/// The same, with something in the environment.
+pub fn enter_with(test: &str, environment: &[(&str, &str)]) -> Option<()> {
     if std::env::var_os(INSIDE).is_some() {
         return Some(());
     }
@@ -33,7 +38,10 @@ pub fn enter(test: &str) -> Option<()> {
         .env("ROS_LOG_DIR", std::env::temp_dir())
         .env("RUST_BACKTRACE", "0")
         .env_remove("ROS_DOMAIN_ID")
+        .env_remove("ROS_LOCALHOST_ONLY")
+        .env_remove("ROS_AUTOMATIC_DISCOVERY_RANGE")
         .env_remove("AMENT_PREFIX_PATH")
+        .envs(environment.iter().copied())
         .status()
         .expect("unshare");
     assert!(status.success(), "{test} failed inside its network");
