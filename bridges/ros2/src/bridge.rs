@@ -174,8 +174,8 @@ impl Shared {
             };
             match self.join(&wanted) {
                 Ok(signals) => {
-                    self.serve(&signals);
-                    self.leave();
+                    let why = self.serve(&signals);
+                    self.leave(why);
                 }
                 Err(why) => {
                     self.robot.lost(why);
@@ -205,20 +205,26 @@ impl Shared {
         Ok(signals)
     }
 
-    fn serve(&self, signals: &Signals) {
-        while let Some(ready) = signals.wait() {
+    /// Until the network is to be left; gives why.
+    fn serve(&self, signals: &Signals) -> &'static str {
+        let mut soon = Duration::ZERO;
+        while let Some(ready) = signals.wait(soon) {
             if let Some(core) = &mut self.state().core {
-                core.turn(ready);
+                match core.turn(ready) {
+                    Some(next) => soon = next,
+                    None => return "joining again: this process was held up, and its network with it",
+                }
             }
         }
+        "joining another network, or under another name"
     }
 
-    fn leave(&self) {
+    fn leave(&self, why: &str) {
         let mut state = self.state();
         state.signals = None;
         let core = state.core.take();
         if !state.is_over {
-            self.robot.connecting("joining another network, or under another name");
+            self.robot.connecting(why);
         }
         drop(state);
         if let Some(mut core) = core {

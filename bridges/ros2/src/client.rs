@@ -61,6 +61,8 @@ struct Client {
     /// Until the server is up.
     waiting: Vec<Waiting>,
     asked: BTreeMap<i64, Asked>,
+    /// What could not be sent.
+    failed: Vec<Outcome>,
     next: i64,
 }
 
@@ -93,6 +95,7 @@ impl Clients {
             response,
             waiting: Vec::new(),
             asked: BTreeMap::new(),
+            failed: Vec::new(),
             next: 0,
         };
         self.clients.insert(service.to_string(), client);
@@ -112,7 +115,8 @@ impl Clients {
         let Some(client) = self.clients.get_mut(service) else { return Ok(()) };
         let bytes = encode(&client.request, message)?;
         client.waiting.push(Waiting { bytes, asked: Asked { then, until } });
-        client.send(node, service)
+        client.send(node, service);
+        Ok(())
     }
 
     /// Whether a reader is a client's, and what has come of its requests.
@@ -129,12 +133,11 @@ impl Clients {
     pub fn tick(&mut self, node: &mut Node, now: Instant) -> Vec<Outcome> {
         let mut outcomes = Vec::new();
         for (service, client) in &mut self.clients {
+            outcomes.append(&mut client.failed);
             if client.waiting.is_empty() && client.asked.is_empty() {
                 continue;
             }
-            if let Err(why) = client.send(node, service) {
-                outcomes.extend(client.waiting.drain(..).map(|waiting| (waiting.asked.then, Err(why.clone()))));
-            }
+            client.send(node, service);
             let is_late = |asked: &Asked| asked.until.is_some_and(|until| until <= now);
             let type_name = &client.type_name;
             let late = client.waiting.extract_if(.., |waiting| is_late(&waiting.asked));
@@ -170,23 +173,29 @@ impl Client {
         node.graph.is_matched(self.writer.guid()) && node.is_heard(self.replies)
     }
 
-    fn send(&mut self, node: &Node, service: &str) -> Result<(), String> {
+    fn send(&mut self, node: &Node, service: &str) {
         if !self.is_matched(node) {
-            return Ok(());
+            return;
         }
         let mapping = node.mapping.unwrap_or_else(|| mapping_of(node, service));
-        for Waiting { bytes, asked } in self.waiting.drain(..) {
-            let number = match mapping {
-                Mapping::FastDds => i64::from(self.writer.write(bytes)?.sequence_number),
-                Mapping::Cyclone => {
-                    self.next += 1;
-                    self.writer.write(Header::new(self.writer.guid(), self.next).before(&bytes))?;
-                    self.next
-                }
-            };
-            self.asked.insert(number, asked);
+        for Waiting { bytes, asked } in std::mem::take(&mut self.waiting) {
+            match self.write(bytes, mapping) {
+                Ok(number) => _ = self.asked.insert(number, asked),
+                Err(why) => self.failed.push((asked.then, Err(why))),
+            }
         }
-        Ok(())
+    }
+
+    /// The request's number, which its reply will have.
+    fn write(&mut self, bytes: Vec<u8>, mapping: Mapping) -> Result<i64, String> {
+        match mapping {
+            Mapping::FastDds => Ok(i64::from(self.writer.write(bytes)?.sequence_number)),
+            Mapping::Cyclone => {
+                self.next += 1;
+                self.writer.write(Header::new(self.writer.guid(), self.next).before(&bytes))?;
+                Ok(self.next)
+            }
+        }
     }
 
     fn reply(&mut self, sample: Sample, mapping: Option<Mapping>) -> Option<Outcome> {

@@ -21,6 +21,13 @@ use crate::types::Struct;
 use crate::types::description;
 use crate::types::registry::unknown;
 
+/// How late what is due may be; and a message that waits for lrp.
+const TICK: Duration = Duration::from_millis(100);
+const HELD: Duration = Duration::from_millis(5);
+
+/// How often it is looked whether the network still works.
+const LOOK: Duration = Duration::from_millis(500);
+
 /// How often the list of what is found is told at most.
 const FOUND: Duration = Duration::from_millis(250);
 
@@ -48,6 +55,8 @@ pub struct Core {
     /// The graph's version that everything follows, and the one that has been told.
     followed: u64,
     found: (u64, Instant),
+    /// When it was last looked whether the network still works.
+    looked: Instant,
 }
 
 impl Core {
@@ -64,6 +73,7 @@ impl Core {
             incompatible: Vec::new(),
             followed: 0,
             found: (0, Instant::now()),
+            looked: Instant::now(),
             config: config.clone(),
         };
         core.configure(config)?;
@@ -105,8 +115,9 @@ impl Core {
         self.node.robot.offer(description(&self.config, &types));
     }
 
-    /// These readers have something; and whatever is due.
-    pub fn turn(&mut self, ready: Vec<ReaderId>) {
+    /// These readers have something; and whatever is due. Gives how long the next turn may be away; none: the network is
+    /// to be joined anew.
+    pub fn turn(&mut self, ready: Vec<ReaderId>) -> Option<Duration> {
         let now = Instant::now();
         self.discover(now);
         for reader in ready {
@@ -123,6 +134,15 @@ impl Core {
         self.outputs.greet(&self.node, &self.system.time());
         self.node.tell();
         self.tell_found(now);
+        self.is_alive(now).then_some(if self.inputs.is_holding() { HELD } else { TICK })
+    }
+
+    fn is_alive(&mut self, now: Instant) -> bool {
+        if now < self.looked + LOOK {
+            return true;
+        }
+        self.looked = now;
+        self.node.is_alive()
     }
 
     fn discover(&mut self, now: Instant) {

@@ -131,6 +131,10 @@ impl Node {
         found
     }
 
+    pub fn is_alive(&self) -> bool {
+        self.link.is_alive()
+    }
+
     /// What discovery has to tell. Gives the endpoints that don't get along with ours.
     pub fn discover(&mut self) -> Vec<graph::Incompatible> {
         let mut incompatible = Vec::new();

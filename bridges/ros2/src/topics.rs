@@ -97,6 +97,10 @@ impl Inputs {
         }
     }
 
+    pub fn is_holding(&self) -> bool {
+        self.inputs.values().any(|input| input.held.is_some())
+    }
+
     /// Says which input a peer doesn't get along with.
     pub fn tell(&self, node: &mut Node, incompatible: &Incompatible) {
         let reader = node.reader_of(incompatible.ours);

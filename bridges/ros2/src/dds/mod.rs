@@ -5,11 +5,14 @@ pub mod qos;
 mod raw;
 
 use std::collections::{BTreeSet, HashMap};
+use std::fs::DirEntry;
 use std::net::{IpAddr, Ipv4Addr, UdpSocket};
+use std::pin::pin;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard};
-use std::task::{Wake, Waker};
+use std::task::{Context, Poll, Wake, Waker};
 use std::time::Duration;
 
+use futures_core::Stream;
 use rustdds::no_key::{DataWriter, DeserializedCacheChange, SimpleDataReader};
 use rustdds::{
     DomainParticipant, DomainParticipantBuilder, DomainParticipantStatusEvent, Publisher, RTPSEntity, SampleIdentity,
@@ -23,12 +26,12 @@ use crate::dds::qos::Qos;
 
 pub type Sample = DeserializedCacheChange<Raw>;
 
-/// How often discovery is looked at, and how long anything else may be late.
-const TICK: Duration = Duration::from_millis(10);
-
 /// Where messages to a multicast address go, by the RTPS specification (9.6.2.3).
 const MESSAGES_PORT: u16 = 7401;
 const PORTS_PER_DOMAIN: u16 = 250;
+
+/// Those of a participant: one for messages, one for discovery.
+const THREADS: usize = 2;
 
 pub struct Link {
     participant: DomainParticipant,
@@ -44,7 +47,7 @@ pub struct Link {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub struct ReaderId(usize);
 
-/// Which readers have something, for the thread that waits for it.
+/// Which readers have something, and whether discovery has, for the thread that waits for it.
 #[derive(Default)]
 pub struct Signals {
     ready: Mutex<Ready>,
@@ -54,6 +57,7 @@ pub struct Signals {
 #[derive(Default)]
 struct Ready {
     readers: BTreeSet<usize>,
+    discovery: bool,
     closed: bool,
 }
 
@@ -102,7 +106,7 @@ impl Link {
         self.next += 1;
         self.readers.insert(id, reader);
         // What comes before the first look must not be missed.
-        self.signals.wake(id);
+        self.signals.wake(Source::Reader(id));
         Ok(ReaderId(id))
     }
 
@@ -135,15 +139,31 @@ impl Link {
         let look = || reader.try_take_one().map_err(|error| format!("{error:?}")).transpose();
         look().or_else(|| {
             reader.drain_read_notifications();
-            reader.set_waker(Some(Waker::from(Arc::new(Signal { reader: id.0, signals: self.signals() }))));
+            reader.set_waker(Some(self.waker(Source::Reader(id.0))));
             // What came between the last look and the waker would wake nobody.
             look()
         })
     }
 
-    /// The next change in what others offer.
+    /// The next change in what others offer; none: as with samples.
     pub fn discover(&self) -> Option<DomainParticipantStatusEvent> {
-        self.discovery.try_recv_status()
+        let waker = self.waker(Source::Discovery);
+        match pin!(self.discovery.as_async_status_stream()).poll_next(&mut Context::from_waker(&waker)) {
+            Poll::Ready(event) => event,
+            Poll::Pending => None,
+        }
+    }
+
+    /// Whether RustDDS still works: its threads end, and nobody is told, where a process is held up for a moment, as by
+    /// SIGSTOP or on a computer that sleeps (its poll is interrupted).
+    pub fn is_alive(&self) -> bool {
+        let Ok(threads) = std::fs::read_dir("/proc/self/task") else { return true };
+        let name = |thread: DirEntry| std::fs::read_to_string(thread.path().join("comm")).unwrap_or_default();
+        threads.flatten().map(name).filter(|name| name.starts_with("RustDDS")).count() >= THREADS
+    }
+
+    fn waker(&self, source: Source) -> Waker {
+        Waker::from(Arc::new(Signal { source, signals: self.signals() }))
     }
 }
 
@@ -185,20 +205,32 @@ impl Writer {
     }
 }
 
+/// What may have something.
+#[derive(Clone, Copy)]
+enum Source {
+    Reader(usize),
+    Discovery,
+}
+
 struct Signal {
-    reader: usize,
+    source: Source,
     signals: Arc<Signals>,
 }
 
 impl Wake for Signal {
     fn wake(self: Arc<Self>) {
-        self.signals.wake(self.reader);
+        self.signals.wake(self.source);
     }
 }
 
 impl Signals {
-    fn wake(&self, reader: usize) {
-        self.ready().readers.insert(reader);
+    fn wake(&self, source: Source) {
+        let mut ready = self.ready();
+        match source {
+            Source::Reader(id) => _ = ready.readers.insert(id),
+            Source::Discovery => ready.discovery = true,
+        }
+        drop(ready);
         self.woken.notify_one();
     }
 
@@ -208,13 +240,12 @@ impl Signals {
         self.woken.notify_one();
     }
 
-    /// Waits a moment at most; the readers that have something. None: it is over.
-    pub fn wait(&self) -> Option<Vec<ReaderId>> {
-        let mut ready = self.ready();
-        if ready.readers.is_empty() && !ready.closed {
-            let woken = self.woken.wait_timeout(ready, TICK);
-            ready = woken.unwrap_or_else(|poisoned| poisoned.into_inner()).0;
-        }
+    /// Waits, but no longer than this, and gives the readers that have something. None: it is over.
+    pub fn wait(&self, longest: Duration) -> Option<Vec<ReaderId>> {
+        let is_quiet = |ready: &mut Ready| ready.readers.is_empty() && !ready.discovery && !ready.closed;
+        let woken = self.woken.wait_timeout_while(self.ready(), longest, is_quiet);
+        let mut ready = woken.unwrap_or_else(|poisoned| poisoned.into_inner()).0;
+        ready.discovery = false;
         (!ready.closed).then(|| std::mem::take(&mut ready.readers).into_iter().map(ReaderId).collect())
     }
 

@@ -71,26 +71,6 @@ class Peer(Node):
 
         threading.Thread(target=send, daemon=True).start()
 
-    def ping(self, out, back, count):
-        """Says how long a message takes there and back."""
-        came = threading.Event()
-        self.kept["<" + back] = self.create_subscription(cls("std_msgs/msg/Int64"), back, lambda _: came.set(), 10)
-        publisher = self.create_publisher(cls("std_msgs/msg/Int64"), out, 10)
-
-        def send():
-            time.sleep(1.0)
-            took = []
-            for _ in range(count):
-                came.clear()
-                began = time.monotonic_ns()
-                publisher.publish(cls("std_msgs/msg/Int64")())
-                came.wait(1.0)
-                took.append(time.monotonic_ns() - began)
-                time.sleep(0.005)
-            say(pinged=out, median=sorted(took)[count // 2])
-
-        threading.Thread(target=send, daemon=True).start()
-
     def raw(self, topic, type, payload):
         """Bytes that need not be a message."""
         if topic not in self.kept:
@@ -103,10 +83,6 @@ class Peer(Node):
     def subscribe(self, topic, type, qos=None):
         heard = lambda message: say(heard=topic, value=seen(message, ANY))
         self.kept["<" + topic] = self.create_subscription(cls(type), topic, heard, profile(qos))
-
-    def echo(self, source, target, type):
-        publisher = self.create_publisher(cls(type), target, 10)
-        self.kept["<" + source] = self.create_subscription(cls(type), source, publisher.publish, 10)
 
     def serve(self, service, type, reply, delay=0.0):
         def answer(request, response):

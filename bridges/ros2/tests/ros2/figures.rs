@@ -1,88 +1,22 @@
 //! What the bridge costs, measured against rclpy: `cargo test --release --workspace --test ros2 figures -- --ignored
 //! --nocapture`.
 
-use std::io::{BufRead, BufReader, Write};
-use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
 use std::sync::Arc;
 use std::task::{Wake, Waker};
 use std::thread::{self, Thread};
 use std::time::{Duration, Instant, SystemTime};
 
-use lrp_bridge::{Event, Form, Health, Item, Order, Output};
+use lrp_bridge::{Item, Order, Output};
 use rustdds::no_key::{DataWriter, SimpleDataReader};
 use rustdds::policy::{History, Reliability};
 use rustdds::{CDRDeserializerAdapter, CDRSerializerAdapter, DomainParticipant, QosPolicyBuilder, TopicKind};
 use serde_json::{Value, json};
 
-use crate::programs::{library, lrp};
+use crate::peers;
+use crate::process::Bridge;
 use crate::world::{Node, enter};
 
 const COUNT: usize = 300;
-
-/// The process that lrp would start.
-struct Bridge {
-    child: Child,
-    orders: ChildStdin,
-    events: BufReader<ChildStdout>,
-}
-
-impl Bridge {
-    fn start(config: Value) -> Bridge {
-        let mut child = Command::new(lrp())
-            .arg("bridge-host")
-            .arg(library())
-            .stdin(Stdio::piped())
-            .stdout(Stdio::piped())
-            .spawn()
-            .expect("the bridge");
-        let (orders, events) = (child.stdin.take().expect("pipe"), child.stdout.take().expect("pipe"));
-        let mut bridge = Bridge { child, orders, events: BufReader::new(events) };
-        bridge.order(&Order::Configure(Form { name: "robot".into(), config, folder: ".".into() }));
-        while !matches!(bridge.event(), Event::State { state: Health::Up, .. }) {}
-        bridge
-    }
-
-    fn order(&mut self, order: &Order) {
-        writeln!(self.orders, "{}", serde_json::to_string(order).expect("an order")).expect("a bridge that listens");
-    }
-
-    fn line(&mut self) -> String {
-        let mut line = String::new();
-        self.events.read_line(&mut line).expect("a bridge that speaks");
-        line
-    }
-
-    fn event(&mut self) -> Event {
-        serde_json::from_str(&self.line()).expect("an event")
-    }
-
-    fn input(&mut self) -> Value {
-        loop {
-            if let Event::Input { value, .. } = self.event() {
-                return value;
-            }
-        }
-    }
-
-    /// Seconds of processor time so far, and MB of memory.
-    fn usage(&self) -> (f64, f64) {
-        let read = |what: &str| std::fs::read_to_string(format!("/proc/{}/{what}", self.child.id())).expect("proc");
-        let stat = read("stat");
-        let fields: Vec<&str> = stat.rsplit(')').next().expect("fields").split_whitespace().collect();
-        let ticks: f64 = [11, 12].iter().map(|at| fields[*at].parse::<f64>().expect("ticks")).sum();
-        let status = read("status");
-        let resident = status.lines().find_map(|line| line.strip_prefix("VmRSS:")).expect("memory");
-        let resident: f64 = resident.trim().trim_end_matches(" kB").parse().expect("kB");
-        (ticks / 100.0, resident / 1000.0)
-    }
-}
-
-impl Drop for Bridge {
-    fn drop(&mut self) {
-        let _ = self.child.kill();
-        let _ = self.child.wait();
-    }
-}
 
 fn median(mut all: Vec<f64>) -> f64 {
     all.sort_by(f64::total_cmp);
@@ -117,10 +51,8 @@ fn now() -> i64 {
 #[ignore = "it measures"]
 fn round_trip() {
     let Some(()) = enter("figures::round_trip") else { return };
-    let mut echo = Node::start("echo");
-    for (source, target) in [("/out", "/back"), ("/bare/out", "/bare/back")] {
-        echo.tell(json!({ "do": "echo", "source": source, "target": target, "type": "std_msgs/msg/Int64" }));
-    }
+    let pairs = ["/out", "/back", "/bare/out", "/bare/back"];
+    let _echo = Node::of(peers::python("echo.py").expect("a peer").args(pairs));
     let mut bridge = Bridge::start(json!({
         "subscribe": { "back": "/back std_msgs/msg/Int64" },
         "publish": { "out": "/out std_msgs/msg/Int64" },

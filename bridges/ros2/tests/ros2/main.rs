@@ -10,6 +10,7 @@ mod graph;
 mod navigation;
 mod networks;
 mod peers;
+mod process;
 mod programs;
 mod topics;
 mod world;
