@@ -1,22 +1,22 @@
 //! What the bridge costs, measured against rclpy: `cargo test --release --workspace --test ros2 figures -- --ignored
 //! --nocapture`.
 
-use std::sync::Arc;
-use std::task::{Wake, Waker};
-use std::thread::{self, Thread};
+use std::thread;
 use std::time::{Duration, Instant, SystemTime};
 
 use lrp_bridge::{Item, Order, Output};
-use rustdds::no_key::{DataWriter, SimpleDataReader};
-use rustdds::policy::{History, Reliability};
-use rustdds::{CDRDeserializerAdapter, CDRSerializerAdapter, DomainParticipant, QosPolicyBuilder, TopicKind};
 use serde_json::{Value, json};
 
+use crate::bare::{Bare, Listener};
 use crate::peers;
 use crate::process::Bridge;
 use crate::world::{Node, enter};
 
 const COUNT: usize = 300;
+
+/// Until all have found each other, and how long is measured then.
+const SETTLED: Duration = Duration::from_secs(2);
+const MEASURED: Duration = Duration::from_secs(5);
 
 fn median(mut all: Vec<f64>) -> f64 {
     all.sort_by(f64::total_cmp);
@@ -58,7 +58,7 @@ fn round_trip() {
         "publish": { "out": "/out std_msgs/msg/Int64" },
     }));
     let bare = Bare::new("rt/bare/out", "rt/bare/back");
-    thread::sleep(Duration::from_secs(2));
+    thread::sleep(SETTLED);
     let (mut ours, mut theirs) = (Vec::new(), Vec::new());
     // In turns, so that both meet the same machine.
     for number in 0..COUNT {
@@ -78,92 +78,53 @@ fn round_trip() {
     );
 }
 
-/// A writer and a reader without a bridge around them.
-struct Bare {
-    writer: DataWriter<i64, CDRSerializerAdapter<i64>>,
-    reader: SimpleDataReader<i64, CDRDeserializerAdapter<i64>>,
-    _participant: DomainParticipant,
-}
-
-impl Bare {
-    fn new(out: &str, back: &str) -> Bare {
-        let participant = DomainParticipant::new(0).expect("a participant");
-        let qos = QosPolicyBuilder::new()
-            .reliability(Reliability::Reliable { max_blocking_time: rustdds::Duration::from_millis(50) })
-            .history(History::KeepLast { depth: 10 })
-            .build();
-        let topic = |name: &str| {
-            let kind = "std_msgs::msg::dds_::Int64_".to_string();
-            participant.create_topic(name.into(), kind, &qos, TopicKind::NoKey).expect("a topic")
-        };
-        let publisher = participant.create_publisher(&qos).expect("a publisher");
-        let subscriber = participant.create_subscriber(&qos).expect("a subscriber");
-        Bare {
-            writer: publisher.create_datawriter_no_key(&topic(out), None).expect("a writer"),
-            reader: subscriber.create_simple_datareader_no_key(&topic(back), None).expect("a reader"),
-            _participant: participant,
-        }
-    }
-
-    fn ping(&self, number: i64) {
-        self.writer.write(number, None).expect("written");
-        while self.take() != number {}
-    }
-
-    fn take(&self) -> i64 {
-        loop {
-            self.reader.drain_read_notifications();
-            self.reader.set_waker(Some(Waker::from(Arc::new(Unpark(thread::current())))));
-            if let Some(sample) = self.reader.try_take_one().expect("a sample") {
-                return sample.sample;
-            }
-            thread::park();
-        }
-    }
-}
-
-struct Unpark(Thread);
-
-impl Wake for Unpark {
-    fn wake(self: Arc<Self>) {
-        self.0.unpark();
-    }
-}
-
 #[test]
 #[ignore = "it measures"]
 fn small_messages() {
     let Some(()) = enter("figures::small_messages") else { return };
-    cost("20 topics with 50 small messages a second each", 20, json!({ "data": 7 }), None, 50.0);
+    let ours = cost("20 topics with 50 small messages a second each", 20, "std_msgs/msg/Int64", None, 50.0);
+    let listener = Listener::start((0..20).map(|number| format!("rt/t{number}")));
+    let _node = talk(20, "std_msgs/msg/Int64", None, 50.0);
+    thread::sleep(SETTLED);
+    let before = listener.usage();
+    thread::sleep(MEASURED);
+    let bare = (listener.usage() - before) / MEASURED.as_secs_f64() * 100.0;
+    println!("of bare DDS that listens to the same: {bare:.1} %; the bridge takes {:.2} times as much", ours / bare);
 }
 
 #[test]
 #[ignore = "it measures"]
 fn images() {
     let Some(()) = enter("figures::images") else { return };
-    cost("images of 1 MB at 30 Hz", 1, json!({}), Some(1_000_000), 30.0);
+    cost("images of 1 MB at 30 Hz", 1, "sensor_msgs/msg/Image", Some(1_000_000), 30.0);
 }
 
-/// Memory and processor time of the bridge's process.
-fn cost(what: &str, topics: usize, value: Value, size: Option<usize>, rate: f64) {
-    let type_name = if size.is_some() { "sensor_msgs/msg/Image" } else { "std_msgs/msg/Int32" };
+/// Memory and processor time of the bridge's process; gives the latter, % of a core.
+fn cost(what: &str, topics: usize, type_name: &str, size: Option<usize>, rate: f64) -> f64 {
     let inputs = (0..topics).map(|number| (format!("t{number}"), json!(format!("/t{number} {type_name}"))));
     let mut bridge = Bridge::start(json!({ "subscribe": Value::Object(inputs.collect()) }));
-    let mut node = Node::start("talker");
-    for number in 0..topics {
-        node.tell(json!({ "do": "publish", "topic": format!("/t{number}"), "type": type_name, "value": value,
-            "size": size, "count": 2000, "rate": rate }));
-    }
-    let settled = Instant::now() + Duration::from_secs(2);
+    let _node = talk(topics, type_name, size, rate);
+    let settled = Instant::now() + SETTLED;
     while Instant::now() < settled {
         bridge.line();
     }
     let ((before, _), began, mut lines) = (bridge.usage(), Instant::now(), 0);
-    while began.elapsed() < Duration::from_secs(5) {
+    while began.elapsed() < MEASURED {
         bridge.line();
         lines += 1;
     }
     let ((after, resident), seconds) = (bridge.usage(), began.elapsed().as_secs_f64());
     let (share, rate) = ((after - before) / seconds * 100.0, f64::from(lines) / seconds);
     println!("{what}: {resident:.1} MB resident, {share:.1} % of a core at {rate:.0} messages/s");
+    share
+}
+
+/// A node that publishes on `/t0`, `/t1` and so on.
+fn talk(topics: usize, type_name: &str, size: Option<usize>, rate: f64) -> Node {
+    let mut node = Node::start("talker");
+    for number in 0..topics {
+        node.tell(json!({ "do": "publish", "topic": format!("/t{number}"), "type": type_name, "value": {},
+            "size": size, "count": 2000, "rate": rate }));
+    }
+    node
 }

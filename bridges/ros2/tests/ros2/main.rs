@@ -1,5 +1,6 @@
 //! All tests of the ROS 2 bridge, one binary. Those with a real ROS run in networks of their own.
 
+mod bare;
 mod calls;
 mod codec;
 mod cyclone;
