@@ -23,7 +23,7 @@ fn main() {
     let binary = PathBuf::from(env!("CARGO_BIN_EXE_lrp"));
     let examples = binary.with_file_name("examples");
     if !examples.join("liblrp_bridge_echo.so").exists() {
-        println!("first: cargo build --release -p lrp-bridge --examples");
+        println!("first: cargo build --release --workspace && cargo build --release -p lrp-bridge --examples");
         return;
     }
     let built = binary.with_file_name("");
@@ -90,7 +90,7 @@ fn sizes(folders: &Folders, lrp: &Path) {
         let config = match kind.as_str() {
             "ev3" => r#"{"address":"127.0.0.1:9"}"#,
             "serial" => r#"{"port":"/dev/none"}"#,
-            "ros2" => r#"{"localhost":true}"#,
+            "ros2" => r#"{"localhost":true,"domain":99}"#,
             _ => "{}",
         };
         println!("{kind:10} {:>11} {:>24}", library / 1000, resident(lrp, &path, config));

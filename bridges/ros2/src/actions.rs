@@ -52,10 +52,13 @@ struct Open {
 }
 
 struct Goal {
-    call: u64,
+    /// None: the call has its reply.
+    call: Option<u64>,
     action: String,
     type_name: String,
     stage: Stage,
+    /// When it must be accepted, and when it must be over.
+    accept: Instant,
     until: Option<Instant>,
     /// Why it is to be cancelled, once it can be.
     cancel: Option<String>,
@@ -133,6 +136,7 @@ impl Actions {
             return Some(Err(format!("nobody offers {}, so its type isn't known yet", action.wanted.name)));
         };
         let (id, now) = (new_id(call), Instant::now());
+        let accept = now + action.wanted.timeout.unwrap_or(PATIENCE);
         let goal = json!({ "goal_id": { "uuid": id }, "goal": goal });
         let sent = clients.ask(
             node,
@@ -141,17 +145,18 @@ impl Actions {
                 type_name: &format!("{}_SendGoal", open.type_name),
                 message: &goal,
                 then: Then::Accept { goal: id },
-                until: Some(now + action.wanted.timeout.unwrap_or(PATIENCE)),
+                until: Some(accept),
             },
         );
         if sent.is_ok() {
             self.goals.insert(
                 id,
                 Goal {
-                    call,
+                    call: Some(call),
                     action: action.wanted.name.clone(),
                     type_name: open.type_name.clone(),
                     stage: Stage::Sent,
+                    accept,
                     until: action.wanted.timeout.map(|timeout| now + timeout),
                     cancel: None,
                 },
@@ -166,8 +171,9 @@ impl Actions {
         let Some(open) = opened.into_iter().find(|open| open.reader == reader) else { return false };
         while let Some(sample) = node.take(reader) {
             let Ok(mut message) = decode(&open.feedback, sample.sample) else { continue };
-            if let Some(goal) = goal_id(&message["goal_id"]).and_then(|id| self.goals.get(&id)) {
-                node.robot.feedback(goal.call, message["feedback"].take());
+            let call = goal_id(&message["goal_id"]).and_then(|id| self.goals.get(&id)?.call);
+            if let Some(call) = call {
+                node.robot.feedback(call, message["feedback"].take());
             }
         }
         true
@@ -206,7 +212,7 @@ impl Actions {
                 }
             }
         };
-        self.goals.remove(&id).map(|goal| (goal.call, Err(refused)))
+        self.goals.remove(&id).and_then(|goal| Some((goal.call?, Err(refused))))
     }
 
     /// A goal is over.
@@ -222,7 +228,7 @@ impl Actions {
                 (status, _) => Err(format!("{action} ended with status {}", status.unwrap_or_default())),
             }
         });
-        Some((call, outcome))
+        Some((call?, outcome))
     }
 
     /// What came of asking to cancel.
@@ -240,7 +246,7 @@ impl Actions {
 
     /// The program has lost interest in a call. Whether it was a goal.
     pub fn cancel(&mut self, node: &mut Node, clients: &mut Clients, call: u64, why: &str) -> Option<Vec<Reply>> {
-        let id = *self.goals.iter().find(|(_, goal)| goal.call == call)?.0;
+        let id = *self.goals.iter().find(|(_, goal)| goal.call == Some(call))?.0;
         Some(self.cancel_goal(node, clients, id, why).into_iter().collect())
     }
 
@@ -257,8 +263,8 @@ impl Actions {
         }
         match goal.stage {
             // One that hasn't left yet doesn't.
-            Stage::Sent if clients.forget(&Then::Accept { goal: id }) => {
-                return self.goals.remove(&id).map(|goal| (goal.call, Err(why.to_string())));
+            Stage::Sent if clients.withdraw(&Then::Accept { goal: id }) => {
+                return self.goals.remove(&id).and_then(|goal| Some((goal.call?, Err(why.to_string()))));
             }
             Stage::Sent => {}
             Stage::Accepted => goal.ask_to_cancel(id, node, clients),
@@ -266,11 +272,20 @@ impl Actions {
         None
     }
 
+    /// Those that aren't over.
+    pub fn open(&self) -> Vec<OpenGoal> {
+        self.goals.iter().map(|(id, goal)| OpenGoal { action: goal.action.clone(), id: *id }).collect()
+    }
+
     /// Cancels what takes too long.
     pub fn tick(&mut self, node: &mut Node, clients: &mut Clients, now: Instant) -> Vec<Reply> {
         let is_late = |goal: &Goal| goal.until.is_some_and(|until| until <= now) && goal.stage == Stage::Accepted;
         let late: Vec<GoalId> = self.goals.iter().filter(|(_, goal)| is_late(goal)).map(|(id, _)| *id).collect();
-        late.into_iter().filter_map(|id| self.cancel_goal(node, clients, id, "the goal took too long")).collect()
+        let cancelled = late.into_iter().filter_map(|id| self.cancel_goal(node, clients, id, "the goal took too long"));
+        let mut replies: Vec<Reply> = cancelled.collect();
+        let unanswered = |goal: &&mut Goal| goal.stage == Stage::Sent && goal.accept <= now;
+        replies.extend(self.goals.values_mut().filter(unanswered).filter_map(Goal::give_up));
+        replies
     }
 }
 
@@ -286,13 +301,32 @@ impl Action {
 
 impl Goal {
     fn ask_to_cancel(&self, id: GoalId, node: &mut Node, clients: &mut Clients) {
+        OpenGoal { action: self.action.clone(), id }.ask_to_cancel(node, clients);
+    }
+
+    /// The call fails; a server that accepts it all the same is asked to cancel it.
+    fn give_up(&mut self) -> Option<Reply> {
+        let why = format!("{}/_action/send_goal took too long", self.action);
+        self.cancel.get_or_insert_with(|| why.clone());
+        Some((self.call.take()?, Err(why)))
+    }
+}
+
+/// A goal that isn't over, as it can be told of to a later node.
+pub struct OpenGoal {
+    action: String,
+    id: GoalId,
+}
+
+impl OpenGoal {
+    pub fn ask_to_cancel(&self, node: &mut Node, clients: &mut Clients) {
         let asked = clients.ask(
             node,
             Request {
                 service: &format!("{}/_action/cancel_goal", self.action),
                 type_name: "action_msgs/srv/CancelGoal",
-                message: &json!({ "goal_info": { "goal_id": { "uuid": id } } }),
-                then: Then::Cancel { goal: id },
+                message: &json!({ "goal_info": { "goal_id": { "uuid": self.id } } }),
+                then: Then::Cancel { goal: self.id },
                 until: Some(Instant::now() + PATIENCE),
             },
         );

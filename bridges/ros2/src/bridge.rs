@@ -1,14 +1,14 @@
 //! The bridge as lrp sees it: one thread that joins, receives and gives up; lrp's thread, which sends.
 
-use std::collections::BTreeMap;
 use std::path::Path;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard};
 use std::thread::{Builder, JoinHandle};
 use std::time::Duration;
 
-use lrp_bridge::{About, Bridge, Call, Description, Form, Level, News, Problem, Robot, Variable, Want};
+use lrp_bridge::{About, Bridge, Call, Description, Form, Level, News, Problem, Robot, Want};
 use serde_json::Value;
 
+use crate::actions::OpenGoal;
 use crate::config::{Config, settings};
 use crate::core::Core;
 use crate::dds::{Link, Signals};
@@ -34,14 +34,8 @@ struct State {
     core: Option<Core>,
     signals: Option<Arc<Signals>>,
     is_over: bool,
-    memory: Memory,
-}
-
-/// What was told of the program, for a node that comes later.
-#[derive(Default)]
-struct Memory {
-    variables: BTreeMap<String, Variable>,
-    states: Option<News>,
+    /// Goals of an earlier node, to be cancelled.
+    open: Vec<OpenGoal>,
 }
 
 impl Bridge for Ros2 {
@@ -101,9 +95,8 @@ impl Bridge for Ros2 {
     }
 
     fn hear(&mut self, news: News) {
-        let state = &mut *self.shared.state();
-        state.memory.keep(&news);
-        if let Some(core) = &mut state.core {
+        // What is said before is said again once it is up.
+        if let Some(core) = &mut self.shared.state().core {
             core.hear(news);
         }
     }
@@ -142,24 +135,6 @@ impl State {
     }
 }
 
-impl Memory {
-    fn keep(&mut self, news: &News) {
-        match news {
-            News::Variables(variables) => {
-                let named = |variable: &Variable| (variable.path.clone(), variable.clone());
-                self.variables.extend(variables.iter().map(named));
-            }
-            News::States { .. } => self.states = Some(news.clone()),
-            News::Answer { .. } | News::Log { .. } => {}
-        }
-    }
-
-    fn news(&self) -> impl Iterator<Item = News> {
-        let variables = News::Variables(self.variables.values().cloned().collect());
-        std::iter::once(variables).chain(self.states.clone())
-    }
-}
-
 impl Shared {
     fn state(&self) -> MutexGuard<'_, State> {
         self.state.lock().unwrap_or_else(|poisoned| poisoned.into_inner())
@@ -193,7 +168,7 @@ impl Shared {
         let signals = link.signals();
         let mut core = Core::new(self.robot.clone(), config, link)?;
         let state = &mut *self.state();
-        state.memory.news().for_each(|news| core.hear(news));
+        core.cancel_goals(&std::mem::take(&mut state.open));
         state.core = Some(core);
         state.signals = Some(Arc::clone(&signals));
         self.robot.up();
@@ -210,9 +185,9 @@ impl Shared {
         let mut soon = Duration::ZERO;
         while let Some(ready) = signals.wait(soon) {
             if let Some(core) = &mut self.state().core {
-                match core.turn(ready) {
-                    Some(next) => soon = next,
-                    None => return "joining again: this process was held up, and its network with it",
+                soon = core.turn(ready);
+                if !core.is_alive() {
+                    return "joining again: this process was held up, and its network with it";
                 }
             }
         }
@@ -228,7 +203,9 @@ impl Shared {
         }
         drop(state);
         if let Some(mut core) = core {
-            core.stop();
+            let open = core.leave(why);
+            drop(core);
+            self.state().open = open;
         }
     }
 }

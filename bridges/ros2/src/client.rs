@@ -17,6 +17,8 @@ use crate::types::Struct;
 #[derive(Default)]
 pub struct Clients {
     clients: BTreeMap<String, Client>,
+    /// What could not be sent, or has lost its client.
+    failed: Vec<Outcome>,
 }
 
 /// What a reply is for.
@@ -61,8 +63,6 @@ struct Client {
     /// Until the server is up.
     waiting: Vec<Waiting>,
     asked: BTreeMap<i64, Asked>,
-    /// What could not be sent.
-    failed: Vec<Outcome>,
     next: i64,
 }
 
@@ -95,7 +95,6 @@ impl Clients {
             response,
             waiting: Vec::new(),
             asked: BTreeMap::new(),
-            failed: Vec::new(),
             next: 0,
         };
         self.clients.insert(service.to_string(), client);
@@ -103,7 +102,8 @@ impl Clients {
     }
 
     pub fn close(&mut self, node: &mut Node, service: &str) {
-        if let Some(client) = self.clients.remove(service) {
+        if let Some(mut client) = self.clients.remove(service) {
+            self.failed.extend(client.give_up(&format!("{service} is used as another type, or no more")));
             node.close_reader(client.replies);
             node.close_writer(client.writer);
         }
@@ -115,7 +115,7 @@ impl Clients {
         let Some(client) = self.clients.get_mut(service) else { return Ok(()) };
         let bytes = encode(&client.request, message)?;
         client.waiting.push(Waiting { bytes, asked: Asked { then, until } });
-        client.send(node, service);
+        client.send(node, service, &mut self.failed);
         Ok(())
     }
 
@@ -131,13 +131,12 @@ impl Clients {
 
     /// Sends what waited for a server that is up by now, and gives up what took too long or has lost its server.
     pub fn tick(&mut self, node: &mut Node, now: Instant) -> Vec<Outcome> {
-        let mut outcomes = Vec::new();
+        let mut outcomes = std::mem::take(&mut self.failed);
         for (service, client) in &mut self.clients {
-            outcomes.append(&mut client.failed);
             if client.waiting.is_empty() && client.asked.is_empty() {
                 continue;
             }
-            client.send(node, service);
+            client.send(node, service, &mut outcomes);
             let is_late = |asked: &Asked| asked.until.is_some_and(|until| until <= now);
             let type_name = &client.type_name;
             let late = client.waiting.extract_if(.., |waiting| is_late(&waiting.asked));
@@ -154,16 +153,40 @@ impl Clients {
         outcomes
     }
 
-    /// Nobody waits for this any more. Whether it hadn't been sent yet.
-    pub fn forget(&mut self, then: &Then) -> bool {
-        let mut was_waiting = false;
+    /// Nobody waits for what a call asked any more.
+    pub fn forget(&mut self, call: u64) {
+        let is_other = |asked: &Asked| asked.then.call() != Some(call);
         for client in self.clients.values_mut() {
-            client.asked.retain(|_, asked| asked.then != *then);
-            let before = client.waiting.len();
-            client.waiting.retain(|waiting| waiting.asked.then != *then);
-            was_waiting |= client.waiting.len() < before;
+            client.waiting.retain(|waiting| is_other(&waiting.asked));
+            client.asked.retain(|_, asked| is_other(asked));
         }
-        was_waiting
+    }
+
+    /// Takes back what hasn't been sent yet. Whether it hadn't.
+    pub fn withdraw(&mut self, then: &Then) -> bool {
+        self.clients
+            .values_mut()
+            .any(|client| client.waiting.extract_if(.., |waiting| waiting.asked.then == *then).count() > 0)
+    }
+
+    /// Gives up all that is still open.
+    pub fn give_up(&mut self, why: &str) -> Vec<Outcome> {
+        let given_up = self.clients.values_mut().flat_map(|client| client.give_up(why));
+        given_up.chain(std::mem::take(&mut self.failed)).collect()
+    }
+}
+
+impl Then {
+    /// The call of the program that it answers at once.
+    fn call(&self) -> Option<u64> {
+        match self {
+            Then::Reply { call }
+            | Then::Get { call, .. }
+            | Then::Typed { call, .. }
+            | Then::Set { call }
+            | Then::List { call } => Some(*call),
+            Then::Accept { .. } | Then::Finish { .. } | Then::Cancel { .. } | Then::Learn { .. } => None,
+        }
     }
 }
 
@@ -173,15 +196,25 @@ impl Client {
         node.graph.is_matched(self.writer.guid()) && node.is_heard(self.replies)
     }
 
-    fn send(&mut self, node: &Node, service: &str) {
+    fn give_up(&mut self, why: &str) -> Vec<Outcome> {
+        let waiting = self.waiting.drain(..).map(|waiting| waiting.asked);
+        let asked = std::mem::take(&mut self.asked).into_values();
+        waiting.chain(asked).map(|asked| (asked.then, Err(why.to_string()))).collect()
+    }
+
+    fn send(&mut self, node: &Node, service: &str, failed: &mut Vec<Outcome>) {
         if !self.is_matched(node) {
             return;
         }
         let mapping = node.mapping.unwrap_or_else(|| mapping_of(node, service));
-        for Waiting { bytes, asked } in std::mem::take(&mut self.waiting) {
+        for Waiting { bytes, mut asked } in std::mem::take(&mut self.waiting) {
+            if let Then::Accept { .. } = asked.then {
+                // It may be accepted however late, and is to be cancelled then: the goal looks after its time.
+                asked.until = None;
+            }
             match self.write(bytes, mapping) {
                 Ok(number) => _ = self.asked.insert(number, asked),
-                Err(why) => self.failed.push((asked.then, Err(why))),
+                Err(why) => failed.push((asked.then, Err(why))),
             }
         }
     }

@@ -6,7 +6,7 @@ use std::time::{Duration, Instant};
 use lrp_bridge::{Call, Level, News, Robot};
 use serde_json::{Value, json};
 
-use crate::actions::{Actions, Reply};
+use crate::actions::{Actions, OpenGoal, Reply};
 use crate::client::{Clients, Outcome, Request, Then};
 use crate::config::Config;
 use crate::dds::{Link, ReaderId};
@@ -115,9 +115,8 @@ impl Core {
         self.node.robot.offer(description(&self.config, &types));
     }
 
-    /// These readers have something; and whatever is due. Gives how long the next turn may be away; none: the network is
-    /// to be joined anew.
-    pub fn turn(&mut self, ready: Vec<ReaderId>) -> Option<Duration> {
+    /// These readers have something; and whatever is due. Gives how long the next turn may be away.
+    pub fn turn(&mut self, ready: Vec<ReaderId>) -> Duration {
         let now = Instant::now();
         self.discover(now);
         for reader in ready {
@@ -134,15 +133,16 @@ impl Core {
         self.outputs.greet(&self.node, &self.system.time());
         self.node.tell();
         self.tell_found(now);
-        self.is_alive(now).then_some(if self.inputs.is_holding() { HELD } else { TICK })
+        if self.inputs.is_holding() { HELD } else { TICK }
     }
 
-    fn is_alive(&mut self, now: Instant) -> bool {
-        if now < self.looked + LOOK {
-            return true;
+    /// Whether the network still works. It is looked at now and then only.
+    pub fn is_alive(&mut self) -> bool {
+        let is_due = self.looked.elapsed() >= LOOK;
+        if is_due {
+            self.looked = Instant::now();
         }
-        self.looked = now;
-        self.node.is_alive()
+        !is_due || self.node.is_alive()
     }
 
     fn discover(&mut self, now: Instant) {
@@ -301,7 +301,7 @@ impl Core {
         match self.actions.cancel(&mut self.node, &mut self.clients, id, WHY) {
             Some(replies) => self.reply(replies),
             None => {
-                self.clients.forget(&Then::Reply { call: id });
+                self.clients.forget(id);
                 self.node.robot.reply(id, Err(WHY.to_string()));
             }
         }
@@ -312,6 +312,22 @@ impl Core {
         self.outputs.halt(self.system.time());
         let replies = self.actions.cancel_all(&mut self.node, &mut self.clients, "the robot was stopped");
         self.reply(replies);
+    }
+
+    /// A halt, and an end to every call: whoever would reply is out of reach from now on.
+    /// Gives the goals that are to be cancelled once somebody can be reached.
+    pub fn leave(&mut self, why: &str) -> Vec<OpenGoal> {
+        self.stop();
+        let goals = self.actions.open();
+        let mut outcomes = self.clients.give_up(why);
+        outcomes.retain(|(then, _)| !matches!(then, Then::Cancel { .. } | Then::Learn { .. }));
+        self.settle(outcomes);
+        goals
+    }
+
+    /// Cancels what an earlier node of ours has begun.
+    pub fn cancel_goals(&mut self, goals: &[OpenGoal]) {
+        goals.iter().for_each(|goal| goal.ask_to_cancel(&mut self.node, &mut self.clients));
     }
 
     pub fn hear(&mut self, news: News) {

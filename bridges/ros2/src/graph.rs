@@ -19,7 +19,7 @@ const PREFIX: usize = 12;
 const CYCLONE: [u8; 2] = [1, 16];
 
 /// Cyclone drops what comes before it has found who sends it, which may take this much longer than finding it took us.
-const CYCLONES_TURN: Duration = Duration::from_millis(100);
+const CYCLONES_DELAY: Duration = Duration::from_millis(100);
 
 #[derive(Default)]
 pub struct Graph {
@@ -160,14 +160,17 @@ impl Graph {
 
     /// Whether an endpoint of ours has somebody to talk to.
     pub fn is_matched(&self, ours: Guid) -> bool {
-        let is_ready = |(guid, since): (&Guid, &Instant)| !is_cyclone(guid) || since.elapsed() >= CYCLONES_TURN;
-        self.matches.get(&ours).is_some_and(|theirs| theirs.iter().any(is_ready))
+        self.ready(ours).next().is_some()
     }
 
-    /// Whether an endpoint of ours can talk to the participant that has one of others'.
+    /// Whether an endpoint of ours can talk to the participant that has one of others', whichever of its endpoints hears.
     pub fn is_matched_with(&self, ours: Guid, theirs: Guid) -> bool {
-        let is_there = |guid: &Guid| prefix(*guid) == prefix(theirs);
-        self.matches.get(&ours).is_some_and(|matched| matched.keys().any(is_there))
+        self.ready(ours).any(|guid| prefix(*guid) == prefix(theirs))
+    }
+
+    fn ready(&self, ours: Guid) -> impl Iterator<Item = &Guid> {
+        let is_ready = |(guid, since): &(&Guid, &Instant)| !is_cyclone(guid) || since.elapsed() >= CYCLONES_DELAY;
+        self.matches.get(&ours).into_iter().flatten().filter(is_ready).map(|(guid, _)| guid)
     }
 
     /// The node that an endpoint belongs to.

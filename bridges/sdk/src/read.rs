@@ -10,21 +10,27 @@ pub fn order(line: &str) -> Option<Order> {
     Some(match line.text("order")?.as_str() {
         "describe" => Order::Describe { config: line.value("config") },
         "configure" => Order::Configure(line.form()?),
-        "send" => Order::Send { items: line.list("items", item)? },
+        "send" => Order::Send { items: line.values("items")?.into_iter().filter_map(item).collect() },
         "cancel" => Order::Cancel { id: line.id()? },
         "stop" => Order::Stop,
         "ping" => Order::Ping { id: line.id()? },
-        "answer" => Order::Answer { id: line.id()?, error: line.text("error") },
+        "answer" => Order::Answer { id: line.id()?, error: line.optional_text("error")? },
         "variables" => Order::Variables { variables: line.list("variables", variable)? },
         "states" => Order::States { t: line.number("t")?, machines: line.list("machines", active)? },
-        "log" => Order::Log { level: line.level()?, message: line.text("message")?, state: line.text("state") },
+        "log" => {
+            Order::Log { level: line.level()?, message: line.text("message")?, state: line.optional_text("state")? }
+        }
         _ => return None,
     })
 }
 
-fn item(mut fields: Fields) -> Option<Item> {
+/// One that isn't known is left out; those beside it are not.
+fn item(item: Value) -> Option<Item> {
+    let mut fields = Fields::of(item)?;
     Some(match fields.text("call") {
-        Some(call) => Item::Call(Call { call, id: fields.id()?, arguments: fields.values("arguments")? }),
+        Some(call) => {
+            Item::Call(Call { call, id: fields.id()?, arguments: fields.values("arguments").unwrap_or_default() })
+        }
         None => Item::Output(Output { output: fields.text("output")?, value: fields.value("value") }),
     })
 }
@@ -55,6 +61,15 @@ impl Fields {
     fn text(&mut self, name: &str) -> Option<String> {
         match self.value(name) {
             Value::String(text) => Some(text),
+            _ => None,
+        }
+    }
+
+    /// None: it is something else than a text.
+    fn optional_text(&mut self, name: &str) -> Option<Option<String>> {
+        match self.value(name) {
+            Value::Null => Some(None),
+            Value::String(text) => Some(Some(text)),
             _ => None,
         }
     }

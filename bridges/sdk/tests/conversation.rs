@@ -213,6 +213,9 @@ fn what_it_does_not_know_is_left_out() {
         lrp.line(line);
     }
     let Some(Event::Pong { id: 1 }) = lrp.event(Duration::from_secs(10)) else { panic!("no pong, or another one") };
+    lrp.line(r#"{"order":"answer","id":1,"error":5}"#);
+    lrp.line(r#"{"order":"send","items":[{"dance":1},{"output":"page","value":1}]}"#);
+    assert_eq!(told(&mut lrp), json!(["connect {}", "page 1", "flush"]));
     let hello =
         r#"{"event":"hello","protocol":1,"kind":"odd","version":"1","summary":"","wants":["states","applause"]}"#;
     let Ok(Event::Hello { about, .. }) = serde_json::from_str(hello) else { panic!("it is one") };

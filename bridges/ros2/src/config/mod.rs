@@ -1,4 +1,4 @@
-//! The program's form: what it can say.
+//! The program's form: what it can say, and the help for it.
 
 mod entries;
 mod network;
@@ -73,7 +73,11 @@ pub fn settings() -> Vec<Setting> {
         setting("namespace", "where relative names begin; default /", r#""/robot""#),
         setting("remap", "names that stand for others", r#"{ ["/cmd_vel"] = "/base/cmd_vel" }"#),
         setting("domain", "DDS domain, 0..232; default ROS_DOMAIN_ID or 0", "7"),
-        setting("localhost", "talk to this machine only; default as ROS_LOCALHOST_ONLY says", "true"),
+        setting(
+            "localhost",
+            "talk to this machine only; default as ROS_LOCALHOST_ONLY or ROS_AUTOMATIC_DISCOVERY_RANGE says",
+            "true",
+        ),
         setting("interface", "the network interface to use, by name or address", r#""wlan0""#),
         setting("interfaces", "folder or folders with definitions, as PACKAGE/msg/NAME.msg", r#""interfaces""#),
         setting(

@@ -7,7 +7,7 @@ use serde_json::Value;
 use super::Network;
 use super::read::Reader;
 
-/// RustDDS computes its ports from it.
+/// Ports are 7400 and up, 250 for each domain.
 const HIGHEST_DOMAIN: u16 = 232;
 
 pub(super) fn network(reader: &mut Reader) -> Network {
@@ -32,7 +32,7 @@ pub(super) fn network(reader: &mut Reader) -> Network {
         Some(interface) => {
             let addresses = addresses(&interface);
             if addresses.is_empty() {
-                let what = format!("there is no network interface `{interface}`");
+                let what = format!("there is no network interface `{interface}` with an IPv4 address");
                 reader.wrong(what, &format!("one of: {}", interfaces().join(", ")), "interface");
             }
             Some(addresses)
@@ -69,7 +69,8 @@ fn addresses(interface: &str) -> Vec<IpAddr> {
 }
 
 fn interfaces() -> Vec<String> {
-    let mut names: Vec<String> = netdev::get_interfaces().into_iter().map(|known| known.name).collect();
+    let usable = netdev::get_interfaces().into_iter().filter(|known| !known.ipv4.is_empty());
+    let mut names: Vec<String> = usable.map(|known| known.name).collect();
     names.sort();
     names
 }

@@ -5,12 +5,15 @@ pub mod qos;
 mod raw;
 
 use std::collections::{BTreeSet, HashMap};
-use std::fs::DirEntry;
-use std::net::{IpAddr, Ipv4Addr, UdpSocket};
+use std::fs::{read_dir, read_to_string};
+use std::io;
+use std::net::{IpAddr, Ipv4Addr, SocketAddrV4};
+use std::path::PathBuf;
 use std::pin::pin;
 use std::sync::{Arc, Condvar, Mutex, MutexGuard};
 use std::task::{Context, Poll, Wake, Waker};
-use std::time::Duration;
+use std::thread::sleep;
+use std::time::{Duration, Instant};
 
 use futures_core::Stream;
 use rustdds::no_key::{DataWriter, DeserializedCacheChange, SimpleDataReader};
@@ -18,6 +21,8 @@ use rustdds::{
     DomainParticipant, DomainParticipantBuilder, DomainParticipantStatusEvent, Publisher, RTPSEntity, SampleIdentity,
     StatusEvented, Subscriber, TopicKind, WriteOptionsBuilder,
 };
+
+use socket2::{Socket, Type};
 
 pub use raw::Raw;
 use raw::RawAdapter;
@@ -30,8 +35,8 @@ pub type Sample = DeserializedCacheChange<Raw>;
 const MESSAGES_PORT: u16 = 7401;
 const PORTS_PER_DOMAIN: u16 = 250;
 
-/// Those of a participant: one for messages, one for discovery.
-const THREADS: usize = 2;
+/// How long the port may be somebody else's.
+const PORT_PATIENCE: Duration = Duration::from_millis(100);
 
 pub struct Link {
     participant: DomainParticipant,
@@ -41,6 +46,8 @@ pub struct Link {
     readers: HashMap<usize, SimpleDataReader<Raw, RawAdapter>>,
     next: usize,
     signals: Arc<Signals>,
+    /// RustDDS's, in /proc.
+    threads: BTreeSet<PathBuf>,
 }
 
 /// A reader of the link.
@@ -74,6 +81,7 @@ impl Link {
             builder = builder.with_only_networks(networks);
         }
         let failed = |error: rustdds::dds::CreateError| format!("can't join DDS domain {domain}: {error:?}");
+        let others = threads();
         let participant = without_multicast(domain, || builder.build()).map_err(failed)?;
         let policies = Qos::DEFAULT.for_writer();
         Ok(Link {
@@ -84,6 +92,7 @@ impl Link {
             readers: HashMap::new(),
             next: 0,
             signals: Arc::default(),
+            threads: &threads() - &others,
         })
     }
 
@@ -155,11 +164,9 @@ impl Link {
     }
 
     /// Whether RustDDS still works: its threads end, and nobody is told, where a process is held up for a moment, as by
-    /// SIGSTOP or on a computer that sleeps (its poll is interrupted).
+    /// SIGSTOP or on a computer that sleeps (its poll is interrupted). Known on Linux only.
     pub fn is_alive(&self) -> bool {
-        let Ok(threads) = std::fs::read_dir("/proc/self/task") else { return true };
-        let name = |thread: DirEntry| std::fs::read_to_string(thread.path().join("comm")).unwrap_or_default();
-        threads.flatten().map(name).filter(|name| name.starts_with("RustDDS")).count() >= THREADS
+        self.threads.iter().all(|thread| thread.exists())
     }
 
     fn waker(&self, source: Source) -> Waker {
@@ -167,15 +174,40 @@ impl Link {
     }
 }
 
+/// Threads of RustDDS in this process.
+fn threads() -> BTreeSet<PathBuf> {
+    let all = read_dir("/proc/self/task").into_iter().flatten().flatten().map(|thread| thread.path());
+    let is_one = |thread: &PathBuf| read_to_string(thread.join("comm")).is_ok_and(|name| name.starts_with("RustDDS"));
+    all.filter(is_one).collect()
+}
+
 /// Builds a participant that offers no multicast address for messages, only one for discovery. RustDDS would offer both
 /// that and its own address, and then Fast DDS sends everything twice, on wireless networks at a crawl; and the second copy
-/// of a big message's last part is kept as if it were a message to come. RustDDS goes without where the port is taken.
+/// of a big message's last part is kept as if it were a message to come.
+///
+/// There is no setting for it, but RustDDS goes without where it can't have the port; so nobody else can for these few
+/// milliseconds either.
 fn without_multicast<T>(domain: u16, build: impl FnOnce() -> T) -> T {
-    let port = MESSAGES_PORT.saturating_add(domain.saturating_mul(PORTS_PER_DOMAIN));
-    let taken = UdpSocket::bind((Ipv4Addr::UNSPECIFIED, port));
+    let address = SocketAddrV4::new(Ipv4Addr::UNSPECIFIED, MESSAGES_PORT + domain * PORTS_PER_DOMAIN);
+    let end = Instant::now() + PORT_PATIENCE;
+    let mut taken = take(address);
+    // Another bridge may be at the same point.
+    while taken.is_err() && Instant::now() < end {
+        sleep(Duration::from_millis(5));
+        taken = take(address);
+    }
     let built = build();
     drop(taken);
     built
+}
+
+/// Takes a port that others may share, as those of Cyclone do, and from now on shares it with nobody else.
+fn take(address: SocketAddrV4) -> io::Result<Socket> {
+    let socket = Socket::new(socket2::Domain::IPV4, Type::DGRAM, None)?;
+    socket.set_reuse_address(true)?;
+    socket.bind(&address.into())?;
+    socket.set_reuse_address(false)?;
+    Ok(socket)
 }
 
 impl Writer {

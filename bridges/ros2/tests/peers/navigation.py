@@ -29,7 +29,7 @@ class Navigation(Peer):
         self.current = None
         self.kept["navigate"] = ActionServer(
             self, NavigateToPose, "/navigate_to_pose", self.drive, goal_callback=self.judge,
-            cancel_callback=self.yield_to, callback_group=self.together)
+            cancel_callback=self.allow_cancel, callback_group=self.together)
 
     def block(self, x, y):
         self.blocked.append((x, y))
@@ -42,7 +42,7 @@ class Navigation(Peer):
         say(goal=place(goal), accepted=is_on_map)
         return GoalResponse.ACCEPT if is_on_map else GoalResponse.REJECT
 
-    def yield_to(self, handle):
+    def allow_cancel(self, handle):
         say(cancel=place(handle.request))
         return CancelResponse.ACCEPT
 

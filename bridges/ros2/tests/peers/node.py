@@ -93,11 +93,12 @@ class Peer(Node):
         kind = cls(type)
         self.kept[service] = self.create_service(kind, service, answer, callback_group=self.together)
 
-    def act(self, action, type, how, feedback=(), result=None, steps=300):
+    def act(self, action, type, how, feedback=(), result=None, steps=300, judging=0.0):
         kind = cls(type)
 
         def goal(request):
             say(goal=action, value=seen(request, ANY))
+            time.sleep(judging)
             return GoalResponse.REJECT if how == "reject" else GoalResponse.ACCEPT
 
         def cancel(handle):

@@ -4,6 +4,7 @@ use std::fs::read_to_string;
 use std::sync::{Arc, Mutex};
 use std::task::{Wake, Waker};
 use std::thread::{self, Builder, Thread};
+use std::time::Duration;
 
 use rustdds::no_key::{DataWriter, SimpleDataReader};
 use rustdds::policy::{History, Reliability};
@@ -20,6 +21,9 @@ fn qos() -> QosPolicies {
         .history(History::KeepLast { depth: 10 })
         .build()
 }
+
+/// A wake that never came is no reason to hang.
+const LOST: Duration = Duration::from_secs(1);
 
 /// Of `std_msgs/msg/Int64`.
 fn topic(participant: &DomainParticipant, name: &str) -> Topic {
@@ -78,7 +82,7 @@ impl Bare {
         self.writer.write(number, None).expect("written");
         let woken = Arc::default();
         while take(&self.reader, 0, &woken) != Some(number) {
-            thread::park();
+            thread::park_timeout(LOST);
         }
     }
 }

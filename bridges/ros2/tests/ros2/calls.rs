@@ -208,3 +208,23 @@ fn the_programs_variables_are_parameters_of_our_node() {
     assert_eq!(result(3), (json!(false), json!("the program has no variable `none`")));
     assert!(lrp.event(Duration::from_millis(1)).is_none_or(|event| !matches!(event, Event::Set { .. })));
 }
+
+#[test]
+fn a_goal_that_is_given_up_before_it_is_accepted_is_cancelled() {
+    let Some(()) = enter("calls::a_goal_that_is_given_up_before_it_is_accepted_is_cancelled") else { return };
+    let mut node = Node::start("counter");
+    node.tell(json!({ "do": "act", "action": "/count", "type": "test_msgs/action/Fibonacci", "how": "run",
+        "feedback": [{ "sequence": [0] }], "judging": 1.0 }));
+    let hasty = json!({ "action": "/count", "timeout": 500 });
+    let mut lrp = bridge(actions(json!({ "count": "/count", "hasty": hasty })));
+    known(&mut lrp, "hasty");
+    let call = lrp.call("count", vec![json!({ "order": 1 })]);
+    node.until("goal");
+    lrp.order(Order::Stop);
+    node.until("cancel");
+    assert_eq!(lrp.reply(call), Err("the robot was stopped".into()));
+    let late = lrp.call("hasty", vec![json!({ "order": 1 })]);
+    node.until("goal");
+    assert_eq!(lrp.reply(late), Err("/count/_action/send_goal took too long".into()));
+    node.until("cancel");
+}

@@ -4,7 +4,6 @@
 use std::thread;
 use std::time::{Duration, Instant, SystemTime};
 
-use lrp_bridge::{Item, Order, Output};
 use serde_json::{Value, json};
 
 use crate::bare::{Bare, Listener};
@@ -64,7 +63,7 @@ fn round_trip() {
     for number in 0..COUNT {
         let began = Instant::now();
         let value = json!({ "data": number });
-        bridge.order(&Order::Send { items: vec![Item::Output(Output { output: "out".into(), value })] });
+        bridge.send("out", value);
         while bridge.input()["data"] != number {}
         ours.push(began.elapsed().as_secs_f64() * 1e3);
         let began = Instant::now();
@@ -94,6 +93,19 @@ fn small_messages() {
 
 #[test]
 #[ignore = "it measures"]
+fn idle() {
+    let Some(()) = enter("figures::idle") else { return };
+    let bridge = Bridge::start(json!({}));
+    thread::sleep(SETTLED);
+    let (before, _) = bridge.usage();
+    thread::sleep(MEASURED);
+    let (after, resident) = bridge.usage();
+    let share = (after - before) / MEASURED.as_secs_f64() * 100.0;
+    println!("idle: {resident:.1} MB resident, {share:.1} % of a core");
+}
+
+#[test]
+#[ignore = "it measures"]
 fn images() {
     let Some(()) = enter("figures::images") else { return };
     cost("images of 1 MB at 30 Hz", 1, "sensor_msgs/msg/Image", Some(1_000_000), 30.0);
@@ -106,15 +118,15 @@ fn cost(what: &str, topics: usize, type_name: &str, size: Option<usize>, rate: f
     let _node = talk(topics, type_name, size, rate);
     let settled = Instant::now() + SETTLED;
     while Instant::now() < settled {
-        bridge.line();
+        bridge.input();
     }
-    let ((before, _), began, mut lines) = (bridge.usage(), Instant::now(), 0);
+    let ((before, _), began, mut inputs) = (bridge.usage(), Instant::now(), 0);
     while began.elapsed() < MEASURED {
-        bridge.line();
-        lines += 1;
+        bridge.input();
+        inputs += 1;
     }
     let ((after, resident), seconds) = (bridge.usage(), began.elapsed().as_secs_f64());
-    let (share, rate) = ((after - before) / seconds * 100.0, f64::from(lines) / seconds);
+    let (share, rate) = ((after - before) / seconds * 100.0, f64::from(inputs) / seconds);
     println!("{what}: {resident:.1} MB resident, {share:.1} % of a core at {rate:.0} messages/s");
     share
 }

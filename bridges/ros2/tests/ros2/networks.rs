@@ -73,10 +73,11 @@ fn an_interface_is_meant_by_its_name_or_address() {
     goes_far(json!({}));
     goes_far(json!({ "interface": "far" }));
     goes_far(json!({ "interface": "10.9.8.7" }));
-    for unknown in ["wlan7", "10.9.8.6"] {
+    // The other end of far has no address.
+    for unknown in ["wlan7", "10.9.8.6", "end"] {
         assert_eq!(
             problems(json!({ "interface": unknown })),
-            [format!("interface: there is no network interface `{unknown}` (one of: end, far, lo)")]
+            [format!("interface: there is no network interface `{unknown}` with an IPv4 address (one of: far, lo)")]
         );
     }
     let mut node = Node::start("talker");

@@ -1,19 +1,23 @@
 //! The bridge in a process of its own, as lrp has it.
 
+use std::collections::BTreeMap;
 use std::io::{BufRead, BufReader, Write};
-use std::process::{Child, ChildStdin, ChildStdout, Command, Stdio};
+use std::process::{Child, ChildStdin, Command, Stdio};
+use std::sync::mpsc::{Receiver, channel};
+use std::thread::{spawn, yield_now};
 
-use lrp_bridge::{Event, Form, Health, Order};
+use lrp_bridge::{Call, Event, Form, Health, Item, Order, Output};
 use serde_json::{Value, json};
 
+use crate::peers;
 use crate::programs::{library, lrp};
-use crate::world::{Node, enter};
+use crate::world::{Node, PATIENCE, enter};
 
 /// The process that lrp would start.
 pub struct Bridge {
     child: Child,
     orders: ChildStdin,
-    events: BufReader<ChildStdout>,
+    lines: Receiver<String>,
 }
 
 impl Bridge {
@@ -26,7 +30,9 @@ impl Bridge {
             .spawn()
             .expect("the bridge");
         let (orders, events) = (child.stdin.take().expect("pipe"), child.stdout.take().expect("pipe"));
-        let mut bridge = Bridge { child, orders, events: BufReader::new(events) };
+        let (sender, lines) = channel();
+        spawn(move || BufReader::new(events).lines().map_while(Result::ok).try_for_each(|line| sender.send(line)));
+        let mut bridge = Bridge { child, orders, lines };
         bridge.order(&Order::Configure(Form { name: "robot".into(), config, folder: ".".into() }));
         while !matches!(bridge.event(), Event::State { state: Health::Up, .. }) {}
         bridge
@@ -36,10 +42,20 @@ impl Bridge {
         writeln!(self.orders, "{}", serde_json::to_string(order).expect("an order")).expect("a bridge that listens");
     }
 
-    pub fn line(&mut self) -> String {
-        let mut line = String::new();
-        self.events.read_line(&mut line).expect("a bridge that speaks");
-        line
+    fn item(&mut self, item: Item) {
+        self.order(&Order::Send { items: vec![item] });
+    }
+
+    pub fn send(&mut self, output: &str, value: Value) {
+        self.item(Item::Output(Output { output: output.into(), value }));
+    }
+
+    fn call(&mut self, call: &str, id: u64, argument: Value) {
+        self.item(Item::Call(Call { call: call.into(), id, arguments: vec![argument] }));
+    }
+
+    fn line(&mut self) -> String {
+        self.lines.recv_timeout(PATIENCE).expect("a bridge that speaks")
     }
 
     pub fn event(&mut self) -> Event {
@@ -50,6 +66,26 @@ impl Bridge {
         loop {
             if let Event::Input { value, .. } = self.event() {
                 return value;
+            }
+        }
+    }
+
+    /// Stops the process for a moment, until it joins again, and gives what it says of it. Some input must come often.
+    fn hold_up(&mut self) -> String {
+        let mut heard = 0;
+        loop {
+            match self.event() {
+                Event::State { state: Health::Connecting, message } => return message.expect("why"),
+                Event::Input { .. } => heard += 1,
+                _ => continue,
+            }
+            // Again and again, in case that its threads are at work just then.
+            if heard % 10 == 5 {
+                self.signal("STOP");
+                while !self.is_stopped() {
+                    yield_now();
+                }
+                self.signal("CONT");
             }
         }
     }
@@ -90,28 +126,47 @@ impl Drop for Bridge {
 fn who_was_held_up_joins_again() {
     let Some(()) = enter("process::who_was_held_up_joins_again") else { return };
     let mut node = Node::start("talker");
-    let number = "std_msgs/msg/Int32";
-    node.tell(
-        json!({ "do": "publish", "topic": "/n", "type": number, "value": { "data": 7 }, "count": 1000, "rate": 50 }),
-    );
-    let mut bridge = Bridge::start(json!({ "subscribe": { "n": "/n" } }));
-    let mut heard = 0;
-    let why = loop {
-        match bridge.event() {
-            Event::State { state: Health::Connecting, message } => break message.expect("why"),
-            Event::Input { .. } => heard += 1,
-            _ => continue,
-        }
-        // Again and again, in case that its threads are at work just then.
-        if heard % 10 == 5 {
-            bridge.signal("STOP");
-            while !bridge.is_stopped() {
-                std::thread::yield_now();
-            }
-            bridge.signal("CONT");
-        }
-    };
+    node.tell(json!({ "do": "publish", "topic": "/n", "type": "std_msgs/msg/Int32", "value": { "data": 7 },
+        "count": 6000, "rate": 50 }));
+    node.tell(json!({ "do": "serve", "service": "/slow", "type": "std_srvs/srv/Trigger", "reply": {}, "delay": 60.0 }));
+    node.tell(json!({ "do": "act", "action": "/count", "type": "test_msgs/action/Fibonacci", "how": "run",
+        "feedback": [{ "sequence": [0] }], "steps": 6000 }));
+    node.tell(json!({ "do": "subscribe", "topic": "/cmd_vel", "type": "geometry_msgs/msg/Twist" }));
+    let mut bridge = Bridge::start(json!({
+        "subscribe": { "n": "/n" },
+        "publish": { "move": "/cmd_vel geometry_msgs/msg/Twist" },
+        "services": { "slow": { "service": "/slow", "type": "std_srvs/srv/Trigger", "timeout": 60000 } },
+        "actions": { "count": "/count test_msgs/action/Fibonacci" },
+        "interfaces": peers::share(),
+    }));
+    bridge.call("slow", 1, json!({}));
+    bridge.call("count", 2, json!({ "order": 1 }));
+    node.until("asked");
+    while !matches!(bridge.event(), Event::Feedback { id: 2, .. }) {}
+    bridge.send("move", json!({ "linear": { "x": 0.5 } }));
+    node.until_where("heard", |heard| heard["value"]["linear"]["x"] == 0.5);
+    let why = bridge.hold_up();
     assert_eq!(why, "joining again: this process was held up, and its network with it");
+    let mut ended = BTreeMap::new();
+    while ended.len() < 2 {
+        if let Event::Reply { id, error, .. } = bridge.event() {
+            ended.insert(id, error);
+        }
+    }
+    assert_eq!(ended, BTreeMap::from([(1, Some(why.clone())), (2, Some(why))]));
     while !matches!(bridge.event(), Event::State { state: Health::Up, .. }) {}
     assert_eq!(bridge.input()["data"], 7);
+    node.until("cancel");
+    assert_eq!(node.until("heard")["value"]["linear"]["x"], 0.0);
+}
+
+/// Cyclone has the port that is kept from RustDDS.
+#[test]
+fn messages_are_not_to_be_sent_to_a_group_beside_cyclone_either() {
+    let Some(()) = enter("process::messages_are_not_to_be_sent_to_a_group_beside_cyclone_either") else { return };
+    let _cyclone = Node::of(peers::python("cyclone.py").expect("a peer").arg("driver"));
+    let sockets = || std::fs::read_to_string("/proc/net/udp").expect("sockets").matches(":1CE9 ").count();
+    let before = sockets();
+    let _bridge = Bridge::start(json!({}));
+    assert!(before > 0 && sockets() == before, "{before}, then {}", sockets());
 }

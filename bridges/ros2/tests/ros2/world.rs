@@ -11,7 +11,7 @@ use serde_json::{Value, json};
 use crate::peers;
 
 /// How long a test waits before it fails.
-const PATIENCE: Duration = Duration::from_secs(30);
+pub const PATIENCE: Duration = Duration::from_secs(30);
 
 const INSIDE: &str = "LRP_INSIDE_NETWORK";
 
