@@ -7,19 +7,18 @@ use lrp_bridge::{Call, Level, News, Robot};
 use serde_json::{Value, json};
 
 use crate::actions::{Actions, OpenGoal, Reply};
-use crate::client::{Clients, Outcome, Request, Then};
+use crate::client::{Clients, Outcome, Then};
 use crate::config::Config;
 use crate::dds::{Link, ReaderId};
 use crate::graph::Incompatible;
-use crate::node::{Node, Wanted};
+use crate::node::Node;
 use crate::offer::{Types, description};
 use crate::parameters::{self, Parameters};
 use crate::services::Services;
 use crate::system::System;
 use crate::topics::{Inputs, Outputs};
 use crate::types::Struct;
-use crate::types::description;
-use crate::types::registry::unknown;
+use crate::wanted;
 
 /// How late what is due may be; and a message that waits for lrp.
 const TICK: Duration = Duration::from_millis(100);
@@ -31,14 +30,8 @@ const LOOK: Duration = Duration::from_millis(500);
 /// How often the list of what is found is told at most.
 const FOUND: Duration = Duration::from_millis(250);
 
-/// How often nodes are asked for a type that nobody has told yet, and when it is said that nobody does.
-const ASK_AGAIN: Duration = Duration::from_secs(2);
-const LATE: Duration = Duration::from_secs(3);
-
 /// How long until a peer that doesn't get along is told of, although its node's name isn't known.
 const NAMELESS: Duration = Duration::from_secs(4);
-
-const DESCRIBE: &str = "type_description_interfaces/srv/GetTypeDescription";
 
 pub struct Core {
     config: Config,
@@ -129,7 +122,7 @@ impl Core {
         self.reply(late);
         self.parameters.tick(&self.node, now);
         self.follow();
-        self.ask_for_types(now);
+        wanted::ask(&mut self.node, &mut self.clients, now);
         self.outputs.greet(&self.node, &self.system.time());
         self.node.tell();
         self.tell_found(now);
@@ -189,49 +182,10 @@ impl Core {
         }
     }
 
-    /// Asks nodes for the types that they have and nobody here knows.
-    fn ask_for_types(&mut self, now: Instant) {
-        let mut offers = Vec::new();
-        let Node { graph, wanted, .. } = &mut self.node;
-        for (type_name, wanted) in wanted {
-            if wanted.asked.is_none_or(|asked| now > asked + ASK_AGAIN)
-                && let Some((of, hash)) = graph.offering(type_name).next()
-            {
-                wanted.asked = Some(now);
-                offers.push((type_name.clone(), of.to_string(), hash.to_string()));
-            }
-        }
-        for (type_name, of, hash) in offers {
-            let request = Request {
-                service: &format!("{of}/get_type_description"),
-                type_name: DESCRIBE,
-                message: &json!({ "type_name": type_name, "type_hash": hash, "include_type_sources": false }),
-                then: Then::Learn { type_name: type_name.clone() },
-                until: Some(now + ASK_AGAIN),
-            };
-            if let Err(why) = self.clients.ask(&mut self.node, request) {
-                self.node.complain(Level::Warn, format!("can't ask {of} for {type_name}: {why}"));
-            }
-        }
-        let is_late = |wanted: &Wanted| now > wanted.since + LATE;
-        let late = self.node.wanted.iter_mut().filter(|(_, wanted)| is_late(wanted));
-        let late: Vec<String> = late.map(|(name, _)| name.clone()).collect();
-        for name in late {
-            self.node.complain_once(Level::Warn, unknown(&name));
-        }
-    }
-
     fn learn(&mut self, type_name: &str, result: Result<Value, String>) {
-        let learnt = result.and_then(|response| match response["successful"] == true {
-            true => description::definitions(&response["type_description"]),
-            false => Err(response["failure_reason"].as_str().unwrap_or_default().to_string()),
-        });
-        match learnt {
-            Ok(definitions) => {
-                self.node.types.learn(definitions);
-                // All look again whether they can go on.
-                self.followed = 0;
-            }
+        match wanted::learn(&mut self.node, result) {
+            // All look again whether they can go on.
+            Ok(()) => self.followed = 0,
             Err(why) => self.node.complain(Level::Warn, format!("no node tells what {type_name} is: {why}")),
         }
     }

@@ -18,6 +18,7 @@ mod services;
 mod system;
 mod topics;
 pub mod types;
+mod wanted;
 
 pub use bridge::Ros2;
 

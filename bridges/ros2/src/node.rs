@@ -3,7 +3,6 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
-use std::time::Instant;
 
 use lrp_bridge::{Level, Robot};
 use serde_json::{Value, json};
@@ -15,6 +14,7 @@ use crate::graph::{self, Graph, Guid};
 use crate::mapping::Mapping;
 use crate::names::{Names, Role, join, to_dds, type_to_dds};
 use crate::types::{Registry, Struct};
+use crate::wanted::Wanted;
 
 const DISCOVERY_TOPIC: &str = "ros_discovery_info";
 const DISCOVERY_TYPE: &str = "rmw_dds_common/msg/ParticipantEntitiesInfo";
@@ -41,12 +41,6 @@ pub struct Node {
     is_told: bool,
     /// Of each thing that went wrong repeatedly, how often.
     complaints: BTreeMap<String, u64>,
-}
-
-/// Since when a type is wanted, and when a node was last asked for it.
-pub struct Wanted {
-    pub since: Instant,
-    pub asked: Option<Instant>,
 }
 
 impl Node {
@@ -124,8 +118,7 @@ impl Node {
                 self.wanted.remove(name);
             }
             Err(_) => {
-                let new = || Wanted { since: Instant::now(), asked: None };
-                self.wanted.entry(name.to_string()).or_insert_with(new);
+                self.wanted.entry(name.to_string()).or_insert_with(Wanted::new);
             }
         }
         found

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeMap;
 use std::sync::Arc;
-use std::time::{Duration, SystemTime};
+use std::time::{Duration, Instant, SystemTime};
 
 use lrp_bridge::Level;
 use serde_json::{Value, json};
@@ -21,6 +21,9 @@ const BIG: usize = 32 * 1024;
 
 /// How long a halt may take to arrive before it is given up.
 const HALT: Duration = Duration::from_millis(200);
+
+/// When a halt is said again to who has just come, unless the program has said something else.
+const AGAIN: Duration = Duration::from_secs(1);
 
 #[derive(Default)]
 pub struct Inputs {
@@ -221,6 +224,8 @@ struct Output {
     open: Option<(Writer, Arc<Struct>)>,
     /// Somebody listens; to the first one a halt is sent before anything else.
     is_heard: bool,
+    /// When it is sent once more: who was just found may not have found us.
+    again: Option<Instant>,
 }
 
 impl Outputs {
@@ -240,6 +245,7 @@ impl Outputs {
                 topic: topic.clone(),
                 open: None,
                 is_heard: false,
+                again: None,
             });
         }
         self.follow(node);
@@ -258,7 +264,8 @@ impl Outputs {
     }
 
     pub fn send(&mut self, node: &mut Node, name: &str, message: &Value) {
-        let Some(output) = self.outputs.get(name) else { return };
+        let Some(output) = self.outputs.get_mut(name) else { return };
+        output.again = None;
         let written = match &output.open {
             Some((writer, kind)) => encode(kind, message).and_then(|bytes| writer.write(bytes).map(|_| ())),
             None => Err(format!("nobody listens to {}, so its type isn't known yet", output.topic.name)),
@@ -279,6 +286,9 @@ impl Outputs {
         for output in self.outputs.values_mut() {
             let is_heard = output.open.as_ref().is_some_and(|(writer, _)| node.graph.is_matched(writer.guid()));
             if is_heard && !output.is_heard {
+                output.halt(time.clone());
+                output.again = Some(Instant::now() + AGAIN);
+            } else if output.again.take_if(|again| *again <= Instant::now()).is_some() {
                 output.halt(time.clone());
             }
             output.is_heard = is_heard;

@@ -4,13 +4,13 @@ use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
-use lrp_bridge::Variable;
+use lrp_bridge::{Level, Variable};
 use serde_json::{Value, json};
 
 use super::values::{self, DOUBLE, DOUBLES, INTEGER, INTEGERS, NOT_SET, named, type_of};
 use crate::dds::qos::Qos;
-use crate::dds::{ReaderId, Writer};
-use crate::mapping::{self, Asker};
+use crate::dds::{ReaderId, Sample, Writer};
+use crate::mapping::{self, Asker, Mapping};
 use crate::names::Role;
 use crate::node::{Node, decode, encode};
 use crate::types::Struct;
@@ -125,9 +125,16 @@ impl Parameters {
     pub fn receive(&mut self, node: &mut Node, reader: ReaderId) -> bool {
         let Some(at) = self.services.iter().position(|service| service.reader == reader) else { return false };
         while let Some(sample) = node.take(reader) {
-            let Some((to, raw)) = mapping::request(sample, node.mapping) else { continue };
-            let kind = self.services[at].kind;
-            let Ok(request) = decode(&self.services[at].request, raw) else { continue };
+            let service = &self.services[at];
+            let (kind, asked) = (service.kind, service.understand(sample, node.mapping));
+            let (to, request) = match asked {
+                Ok(asked) => asked,
+                Err(why) => {
+                    let what = "a request for our parameters can't be read";
+                    node.complain(Level::Warn, format!("{what}: {why}; where `rmw` is set, is it right?"));
+                    continue;
+                }
+            };
             match kind {
                 Kind::Set | Kind::SetAtomically => self.set(node, kind, to, &request),
                 _ => {
@@ -252,6 +259,12 @@ impl Parameters {
 }
 
 impl Service {
+    /// Who asks, and what.
+    fn understand(&self, sample: Sample, mapping: Option<Mapping>) -> Result<(Asker, Value), String> {
+        let (to, raw) = mapping::request(sample, mapping).ok_or("it is too short")?;
+        Ok((to, decode(&self.request, raw)?))
+    }
+
     fn answer(&mut self, node: &Node, response: &Value, to: Asker) {
         let Ok(bytes) = encode(&self.response, response) else { return };
         let now = Instant::now();

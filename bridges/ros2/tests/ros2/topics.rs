@@ -233,3 +233,15 @@ fn a_type_that_nobody_knows_here_is_told_by_its_node() {
         "value": { "basic_types_value": { "int16_value": -3 } }, "count": 1000 }));
     assert_eq!(lrp.input("odd")["basic_types_value"]["int16_value"], json!(-3));
 }
+
+/// The first time it may not have found us yet.
+#[test]
+fn who_has_just_come_is_halted_twice() {
+    let Some(()) = enter("topics::who_has_just_come_is_halted_twice") else { return };
+    let mut node = Node::start("base");
+    node.tell(json!({ "do": "subscribe", "topic": "/cmd_vel", "type": "geometry_msgs/msg/Twist" }));
+    let _lrp = bridge(json!({ "publish": { "move": "/cmd_vel geometry_msgs/msg/Twist" } }));
+    for _ in 0..2 {
+        assert_eq!(node.until("heard")["value"]["linear"]["x"], 0.0);
+    }
+}
