@@ -7,7 +7,7 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::mpsc::{Receiver, RecvTimeoutError, Sender, channel};
 use std::sync::{Arc, Mutex, MutexGuard};
 use std::thread::JoinHandle;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use self::turns::Loop;
 use super::driver::Driver;
@@ -88,7 +88,22 @@ impl Commands {
     pub fn halt(&self) {
         halt(&self.stoppers);
     }
+
+    /// Does something, as stopping this process, while every robot stands still, which it waits for, though not for long.
+    /// Nothing that the program sends meanwhile reaches them.
+    pub fn at_rest<T>(&self, body: impl FnOnce() -> T) -> T {
+        let stoppers = locked(&self.stoppers).clone();
+        stoppers.iter().for_each(|robot| robot.hold());
+        let until = Instant::now() + REST;
+        stoppers.iter().for_each(|robot| robot.wait(until));
+        let result = body();
+        stoppers.iter().for_each(|robot| robot.release());
+        result
+    }
 }
+
+/// How long robots may take to say that they stand still.
+const REST: Duration = Duration::from_secs(1);
 
 pub struct EngineThread {
     commands: Commands,
@@ -158,9 +173,7 @@ impl Drop for EngineThread {
 }
 
 fn halt(stoppers: &Mutex<Vec<Stopper>>) {
-    for stop in locked(stoppers).iter() {
-        stop();
-    }
+    locked(stoppers).iter().for_each(|robot| robot.halt());
 }
 
 fn locked<T>(shared: &Mutex<T>) -> MutexGuard<'_, T> {

@@ -71,8 +71,7 @@ impl Run {
                 Event::Signal(Signal::Interrupt) => return Some(ExitCode::from(130)),
                 Event::Signal(Signal::Terminate | Signal::HangUp) => return Some(ExitCode::SUCCESS),
                 Event::Signal(Signal::Suspend) => {
-                    session.commands().halt();
-                    if let Err(error) = signals::suspend() {
+                    if let Err(error) = session.commands().at_rest(signals::suspend) {
                         say(&format!("can't be suspended: {error}"));
                     }
                 }

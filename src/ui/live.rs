@@ -316,8 +316,9 @@ impl Live {
             Effect::Quit => return Next::End(ExitCode::SUCCESS),
             Effect::Suspend => {
                 self.app.stopped();
-                self.session.commands().send(Command::Runstop);
-                if let Err(error) = self.screen.suspend() {
+                let commands = self.session.commands();
+                commands.send(Command::Runstop);
+                if let Err(error) = commands.at_rest(|| self.screen.suspend()) {
                     self.app.notice(format!("can't be suspended: {error}"));
                 }
             }

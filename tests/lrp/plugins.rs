@@ -3,6 +3,7 @@
 
 mod documented;
 mod found;
+mod held_up;
 mod kept;
 mod talk;
 mod told;

@@ -41,7 +41,7 @@ fn a_halt_that_was_obeyed_does_not_undo_what_the_robot_is_told_later() {
     let mut driver = started();
     let start = step(&mut driver, 100.0);
     assert!(step(&mut driver, 200.0) > start);
-    driver.stoppers().iter().for_each(|halt| halt());
+    driver.stoppers().iter().for_each(|robot| robot.halt());
     obey(&mut driver, Command::Runstop);
     obey(&mut driver, Command::Restart);
     obey(&mut driver, Command::Resume);

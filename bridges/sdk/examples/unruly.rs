@@ -65,6 +65,9 @@ impl Bridge for Unruly {
     }
 
     fn send(&mut self, _: &str, message: Value) {
+        if message["what"] == "drive" {
+            return self.note("drive");
+        }
         misbehave(message["what"].as_str().unwrap_or_default(), &self.robot);
     }
 

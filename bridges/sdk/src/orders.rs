@@ -3,6 +3,7 @@
 
 use std::collections::VecDeque;
 use std::sync::{Condvar, Mutex, MutexGuard};
+use std::time::Duration;
 
 use crate::message::{Item, Order};
 
@@ -77,6 +78,14 @@ impl Orders {
             }
             queue = self.filled.wait(queue).unwrap_or_else(|poisoned| poisoned.into_inner());
         }
+    }
+
+    /// The same, but waits no longer than that for something to come; none: nothing did.
+    pub(crate) fn take_within(&self, patience: Duration) -> Option<Result<Order, End>> {
+        let waits = |queue: &mut Queue| queue.end.is_none() && queue.orders.is_empty();
+        let waited = self.filled.wait_timeout_while(self.queue(), patience, waits);
+        let came = !waited.unwrap_or_else(|poisoned| poisoned.into_inner()).1.timed_out();
+        came.then(|| self.take())
     }
 
     fn queue(&self) -> MutexGuard<'_, Queue> {

@@ -1,5 +1,5 @@
 //! A bridge's process: reads orders, has the bridge carry them out on one thread, writes what it says. The robot is
-//! stopped whenever lrp is gone, and when the bridge panics.
+//! stopped whenever lrp is gone or held up, and when the bridge panics.
 
 use std::fs::File;
 use std::io::{BufRead, BufReader, Read, Write};
@@ -19,6 +19,10 @@ use crate::{Bridge, News, PROTOCOL, read};
 const END: Duration = Duration::from_secs(2);
 
 const LAST_WORDS: Duration = Duration::from_millis(500);
+
+/// How long lrp, which pings every second, may say nothing before nobody steers the robot: lrp's process was stopped, or
+/// gets no time to run.
+const SILENCE: Duration = Duration::from_secs(3);
 
 /// What a bridge's process ends with.
 const FINE: i32 = 0;
@@ -107,13 +111,22 @@ fn read(input: impl Read, orders: &Orders, robot: &Robot) {
 
 fn serve<B: Bridge>(robot: &Robot, orders: &Orders) -> i32 {
     let mut bridge: Option<B> = None;
+    // Once it pings; and no longer than it is heard.
+    let mut is_to_be_heard = false;
     loop {
-        let end = match orders.take() {
-            Ok(order) => {
+        let taken = if is_to_be_heard { orders.take_within(SILENCE) } else { Some(orders.take()) };
+        let end = match taken {
+            Some(Ok(order)) => {
+                is_to_be_heard |= matches!(order, Order::Ping { .. });
                 let obey = AssertUnwindSafe(|| obey(&mut bridge, order, robot));
                 catch_unwind(obey).err().map(|_| End::Panicked)
             }
-            Err(end) => Some(end),
+            Some(Err(end)) => Some(end),
+            None => {
+                is_to_be_heard = false;
+                let stop = AssertUnwindSafe(|| unsteered(&mut bridge, robot));
+                catch_unwind(stop).err().map(|_| End::Panicked)
+            }
         };
         if let Some(end) = end {
             let stop = AssertUnwindSafe(|| {
@@ -147,6 +160,14 @@ fn obey<B: Bridge>(bridge: &mut Option<B>, order: Order, robot: &Robot) {
                 tell(bridge, order);
             }
         }
+    }
+}
+
+fn unsteered<B: Bridge>(bridge: &mut Option<B>, robot: &Robot) {
+    if let Some(bridge) = bridge {
+        bridge.stop();
+        let silence = SILENCE.as_secs();
+        robot.log(Level::Warn, format!("the robot was stopped: lrp was held up, and said nothing for {silence} s"));
     }
 }
 

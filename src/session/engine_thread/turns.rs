@@ -19,6 +19,11 @@ const PENDING: usize = 32;
 const STATUS: Duration = Duration::from_millis(500);
 /// While nothing steps, robots are heard this often.
 const ATTEND: Duration = Duration::from_millis(50);
+/// A step that is later than this: the process was stopped, or got no time to run, and what robots said meanwhile is
+/// still to be read.
+const HELD_UP: Duration = Duration::from_secs(1);
+/// How long that may take. Until then no step is made, which would take what is long ago for what is now.
+const CATCH_UP: Duration = Duration::from_millis(200);
 /// How often a robot's clock is looked at for the next step.
 const LOOK_AT_CLOCK: Duration = Duration::from_millis(2);
 
@@ -36,6 +41,8 @@ pub(super) struct Loop<'n, N: Fn(News)> {
     started: Instant,
     /// Of a robot whose clock is followed, as last seen.
     robots_clock: Option<Duration>,
+    /// No step is made before.
+    caught_up: Instant,
     loaded: bool,
     /// The first program, until its robots are there or somebody wants it to begin without them.
     first: Option<Edit>,
@@ -76,6 +83,7 @@ impl<'n, N: Fn(News)> Loop<'n, N> {
             flushed: now,
             started: now,
             robots_clock: None,
+            caught_up: now,
             loaded: false,
             first: None,
             status: Status::new(),
@@ -236,9 +244,18 @@ impl<'n, N: Fn(News)> Loop<'n, N> {
         if self.pacing.until.is_some_and(|until| due.now > until) {
             return true;
         }
+        // A robot's clock may make any leap.
+        if due.late > HELD_UP && self.robots_clock.is_none() {
+            self.caught_up = Instant::now() + CATCH_UP;
+        }
+        let is_behind = Instant::now() < self.caught_up;
+        let steps = due.skipped + u64::from(is_behind);
         let batch = &mut self.batch;
-        if due.skipped > 0 {
-            self.driver.say(What::Skip { steps: due.skipped }, &mut |record| batch.push(record));
+        if steps > 0 {
+            self.driver.say(What::Skip { steps }, &mut |record| batch.push(record));
+        }
+        if is_behind {
+            return false;
         }
         self.driver.step(due.now, &mut |record| batch.push(record));
         self.status.steps += 1;

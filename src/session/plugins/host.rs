@@ -2,14 +2,15 @@
 //! nothing of programs and engines.
 
 use std::fmt::Display;
-use std::fs;
 use std::io::{Write, stderr, stdout};
 use std::os::fd::RawFd;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
 
 use libloading::{Library, Symbol};
 use lrp_bridge::{About, Event, PROTOCOL};
+
+use super::copy::Copy;
 
 type Main = extern "C" fn(RawFd, RawFd) -> i32;
 
@@ -35,33 +36,14 @@ fn share_one_heap() {
     }
 }
 
-/// From a copy: the original may be built anew meanwhile, and a loaded file that is cut short takes the process with it.
 fn load(path: &Path) -> Result<Library, String> {
-    let copy = Copy::of(path).map_err(|error| format!("it can't be copied to be loaded: {error}"))?;
+    let copy = Copy::of(path)?;
     // SAFETY: the library's own initialisers run; that is what a user who puts it into a bridge folder asks for.
-    unsafe { Library::new(&copy.0) }.map_err(|error| format!("it can't be loaded: {error}"))
-}
-
-struct Copy(PathBuf);
-
-impl Copy {
-    fn of(path: &Path) -> std::io::Result<Copy> {
-        let name = format!("lrp-{}-{}", std::process::id(), path.file_name().unwrap_or_default().display());
-        let copy = Copy(std::env::temp_dir().join(name));
-        fs::copy(path, &copy.0)?;
-        Ok(copy)
-    }
-}
-
-impl Drop for Copy {
-    fn drop(&mut self) {
-        // Once loaded it is no longer needed under a name.
-        let _ = fs::remove_file(&self.0);
-    }
+    unsafe { Library::new(&copy.0) }.map_err(|error| copy.explain(&error))
 }
 
 fn speak(library: &Library) -> Result<u8, String> {
-    let not_a_bridge = |error: libloading::Error| format!("it is no bridge: {error}");
+    let not_a_bridge = |_| "it is a library, but no bridge: does it say `bridge!`?".to_string();
     // SAFETY: both symbols are exported by the author crate's macro, with these types.
     let (protocol, main): (Symbol<*const u32>, Symbol<Main>) = unsafe {
         (

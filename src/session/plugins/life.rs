@@ -12,6 +12,7 @@ use super::incoming::Said;
 use super::keeper::{LOOK_EVERY, Loss, Note, Work};
 use super::process::{Heard, Process, how_it_ended};
 use crate::runtime::record::Health;
+use crate::session::robots::Halt;
 use crate::session::watch::stamp::Stamp;
 
 /// How long a bridge may take to say hello.
@@ -22,6 +23,8 @@ const ANSWER: Duration = Duration::from_secs(3);
 /// How long it may take to stop its robot and end when it is told to.
 const FAREWELL: Duration = Duration::from_millis(2500);
 const LAST_WORDS: Duration = Duration::from_millis(200);
+/// Longer than any time between two looks, unless this process was stopped, or gets no time to run.
+const HELD_UP: Duration = Duration::from_secs(1);
 /// Lines that are no events, before the process counts as one that doesn't speak the protocol.
 const GARBAGE: u32 = 100;
 /// Lines of its standard error that go to the log, a second.
@@ -41,6 +44,8 @@ pub(super) struct Life {
     /// Since when an answer to a ping or a stop is due.
     unanswered: Option<Instant>,
     looked: Instant,
+    /// When that was last asked: a long time ago means that this process was held up.
+    awake: Instant,
     garbage: u32,
     complaints: u32,
     /// For the report of its end.
@@ -61,6 +66,7 @@ impl Life {
             pinged: now,
             unanswered: None,
             looked: now,
+            awake: now,
             garbage: 0,
             complaints: 0,
             last_words: None,
@@ -132,8 +138,8 @@ impl Life {
         self.greeted = true;
         let orders = self.process.orders();
         orders.put(Order::Configure(work.form.clone()));
-        orders.put(Order::Stop);
         work.line.connect(Some(Arc::clone(orders)));
+        work.line.halt();
         None
     }
 
@@ -155,7 +161,8 @@ impl Life {
                 self.unanswered = None;
                 return;
             }
-            Event::Stopped | Event::Hello { .. } | Event::Input { .. } | Event::Time { .. } => return,
+            Event::Stopped => return work.line.stopped(),
+            Event::Hello { .. } | Event::Input { .. } | Event::Time { .. } => return,
         };
         work.line.incoming.say(said);
     }
@@ -163,6 +170,7 @@ impl Life {
     /// What time alone brings to light.
     fn look(&mut self) -> Option<Loss> {
         let now = Instant::now();
+        self.pardon(now);
         if !self.greeted {
             return (now - self.since > HELLO)
                 .then(|| Loss::Failed(format!("it hasn't said hello within {} s", HELLO.as_secs())));
@@ -186,6 +194,15 @@ impl Life {
             }
         }
         None
+    }
+
+    /// While this process was held up, nobody could hear what the bridge answered.
+    fn pardon(&mut self, now: Instant) {
+        let passed = now - std::mem::replace(&mut self.awake, now);
+        if passed > HELD_UP {
+            self.since += passed;
+            self.unanswered = self.unanswered.map(|since| since + passed);
+        }
     }
 
     /// Lets the process go: it stops its robot, unless it hangs.

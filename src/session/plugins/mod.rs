@@ -2,6 +2,7 @@
 //! does can't hold up anybody else.
 
 mod ask;
+mod copy;
 mod folders;
 mod host;
 mod incoming;

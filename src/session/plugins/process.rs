@@ -16,8 +16,9 @@ use super::folders::{Plugin, PluginForm};
 const LINE: u64 = 16 << 20;
 /// Bytes a second that are read; a bridge that says more waits.
 const FLOW: usize = 64 << 20;
-/// Of a line that is shown.
-const SHOWN: usize = 120;
+/// Of a line that is shown: one that should have been an event, or a complaint, which may name files.
+const GARBAGE: usize = 120;
+const COMPLAINT: usize = 400;
 
 pub struct Process {
     child: Child,
@@ -129,7 +130,7 @@ fn read(output: impl Read, heard: &dyn Fn(Heard)) {
         }
         heard(match serde_json::from_slice(&line) {
             Ok(event) => Heard::Event(event, line.len()),
-            Err(_) => Heard::Garbage(shown(&line)),
+            Err(_) => Heard::Garbage(shown(&line, GARBAGE)),
         });
     }
 }
@@ -144,14 +145,14 @@ fn complaints(errors: impl Read, heard: &dyn Fn(Heard)) {
             Ok(0) | Err(_) => return heard(Heard::Mute),
             Ok(length) => flow.take(length),
         }
-        heard(Heard::Complaint(shown(&line)));
+        heard(Heard::Complaint(shown(&line, COMPLAINT)));
     }
 }
 
-fn shown(line: &[u8]) -> String {
+fn shown(line: &[u8], most: usize) -> String {
     let text = String::from_utf8_lossy(line);
     let text = text.trim_end();
-    match text.char_indices().nth(SHOWN) {
+    match text.char_indices().nth(most) {
         Some((end, _)) => format!("{}…", &text[..end]),
         None => text.to_string(),
     }

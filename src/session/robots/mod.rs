@@ -8,7 +8,7 @@ mod sim;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::thread::JoinHandle;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 use lrp_bridge::{About, Item, Order, Want};
 use serde_json::Value;
@@ -92,8 +92,26 @@ pub enum Fit {
     Anew,
 }
 
-/// Brings a robot to a halt without asking the engine.
-pub type Stopper = Arc<dyn Fn() + Send + Sync>;
+/// Brings a robot to a halt without asking the engine, from any thread.
+pub type Stopper = Arc<dyn Halt>;
+
+pub trait Halt: Send + Sync {
+    fn halt(&self);
+    /// Halts it, and keeps it so until it is released, whatever it is sent.
+    fn hold(&self) {
+        self.halt();
+    }
+    /// Until it has heard of every halt, or that time.
+    fn wait(&self, _until: Instant) {}
+    fn release(&self) {}
+}
+
+/// A robot in this process, which moves no more than this process does.
+impl<F: Fn() + Send + Sync> Halt for F {
+    fn halt(&self) {
+        self();
+    }
+}
 
 /// How the robots of a program are to be made.
 #[derive(Clone, Debug)]

@@ -9,7 +9,7 @@ use std::time::{Duration, Instant};
 use lrp_bridge::{Form, Item, Level, Order, Scope, Want};
 use serde_json::{Value, json};
 
-use super::{Bridge, Fit, Offered, Problems, Stopper, problem};
+use super::{Bridge, Fit, Halt, Offered, Problems, Stopper, problem};
 use crate::model::{self, Description};
 use crate::runtime::Time;
 use crate::runtime::record::{BridgeState, Health};
@@ -136,12 +136,11 @@ impl Bridge for Connected {
     }
 
     fn stop(&mut self) {
-        self.keeper.line().stop();
+        self.keeper.line().halt();
     }
 
     fn stopper(&self) -> Stopper {
-        let line = Arc::clone(self.keeper.line());
-        Arc::new(move || line.stop())
+        Arc::clone(self.keeper.line()) as Stopper
     }
 
     fn stops_on_pause(&self) -> bool {

@@ -41,6 +41,44 @@ fn what_ends_at_once_says_its_last_words() {
     assert!(why.starts_with("ended with code 1: no such module; started again in"), "{why}");
 }
 
+/// What is said of a library that is made of the good one's bytes.
+fn unusable(make: impl FnOnce(Vec<u8>) -> Vec<u8>, temporary: &Path) -> String {
+    let folder = tempfile::tempdir().expect("a folder");
+    let good = fs::read(examples().join("liblrp_bridge_echo.so")).expect("a library");
+    fs::write(folder.path().join("liblrp_bridge_echo.so"), make(good)).expect("a library");
+    let mut lrp = Command::new(lrp_binary());
+    lrp.args(["bridges", "echo", "--bridge-path"]).arg(folder.path()).env("TMPDIR", temporary);
+    let said = lrp.output().expect("lrp");
+    assert_eq!(said.status.code(), Some(1));
+    let said = String::from_utf8_lossy(&said.stderr).into_owned();
+    said.split_once("echo.so: ").expect("the library's name").1.trim_end().to_string()
+}
+
+#[test]
+fn a_library_that_can_not_be_loaded_says_why() {
+    let temporary = tempfile::tempdir().expect("a folder");
+    let here = temporary.path();
+    let cut = "it can't be loaded: it is cut short; is it still being written, or was the disk full?";
+    assert_eq!(unusable(|good| good[..good.len() / 2].to_vec(), here), cut);
+    let other = |words: &str| {
+        format!("it can't be loaded from {}: {words}; is it whole, and built for this computer?", here.display())
+    };
+    assert_eq!(unusable(|_| Vec::new(), here), other("file too short"));
+    assert_eq!(unusable(|_| b"text ".repeat(99), here), other("invalid ELF header"));
+    let of_another_machine = |mut good: Vec<u8>| {
+        // Where ELF has the machine: one that there isn't.
+        good[18..20].copy_from_slice(&[0xee, 0xee]);
+        good
+    };
+    let why = unusable(of_another_machine, here);
+    assert!(why.ends_with("; is it whole, and built for this computer?"), "{why}");
+    assert_eq!(fs::read_dir(here).expect("a folder").count(), 0, "copies are removed");
+    let nowhere = here.join("nowhere");
+    let why = unusable(|good| good, &nowhere);
+    let begins = format!("it can't be copied to {} to be loaded: ", nowhere.display());
+    assert!(why.starts_with(&begins) && why.ends_with("; is there room? TMPDIR names another folder"), "{why}");
+}
+
 #[test]
 fn they_are_listed_with_what_they_offer() {
     let folder = tempfile::tempdir().expect("a folder");
