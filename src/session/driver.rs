@@ -16,7 +16,7 @@ use serde_json::Value;
 use self::robot::{Robot, hear, messages};
 use self::sent::{Delivery, Sent, cancel, send};
 use self::told::Told;
-use super::findings::{errors_first, files};
+use super::findings::of_rejected;
 use super::modules;
 use super::plugins::Said;
 use super::robots::{Bridge, Concern, Problems, Stopper, Workshop};
@@ -221,7 +221,7 @@ impl Driver {
                 }
                 Err(Problems { sources, diagnostics }) => {
                     let sources = if sources.is_empty() { self.engine.program().sources.clone() } else { sources };
-                    let (findings, files) = (errors_first(&diagnostics, &sources), files(&diagnostics, &sources));
+                    let (findings, files) = of_rejected(&diagnostics, &sources);
                     self.engine.say(What::Reject { findings, files });
                     self.world_is_broken = true;
                 }

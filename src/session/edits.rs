@@ -160,8 +160,7 @@ impl Desk {
                 Command::Load(Edit::of(&self.running, program))
             }
             Err(Rejected { sources, diagnostics }) => {
-                let (findings, files) =
-                    (findings::errors_first(&diagnostics, &sources), findings::files(&diagnostics, &sources));
+                let (findings, files) = findings::of_rejected(&diagnostics, &sources);
                 Command::Reject { findings, files }
             }
         };
@@ -219,9 +218,7 @@ impl Desk {
         let mistake = if required { self.compiler.check_lua(&source, FileId(0)) } else { None };
         match mistake {
             Some(mistake) => {
-                let (mistakes, sources) = ([mistake], [source]);
-                let (findings, files) =
-                    (findings::errors_first(&mistakes, &sources), findings::files(&mistakes, &sources));
+                let (findings, files) = findings::of_rejected(&[mistake], &[source]);
                 Command::Reject { findings, files }
             }
             None => Command::FileChanged { file: path.display().to_string() },

@@ -12,8 +12,12 @@ pub fn errors_first(diagnostics: &[Diagnostic], sources: &[Source]) -> Vec<Findi
     sorted.into_iter().map(|diagnostic| spelled_out(diagnostic, sources)).collect()
 }
 
-/// The texts that errors were found in.
-pub fn files(diagnostics: &[Diagnostic], sources: &[Source]) -> Vec<File> {
+/// What a rejected edit is told with: the findings, and the texts that errors were found in.
+pub fn of_rejected(diagnostics: &[Diagnostic], sources: &[Source]) -> (Vec<Finding>, Vec<File>) {
+    (errors_first(diagnostics, sources), files(diagnostics, sources))
+}
+
+fn files(diagnostics: &[Diagnostic], sources: &[Source]) -> Vec<File> {
     let errors = diagnostics.iter().filter(|diagnostic| diagnostic.is_error());
     let files: BTreeSet<usize> = errors.map(|error| usize::from(error.span.file.0)).collect();
     let texts = files.into_iter().filter_map(|file| sources.get(file));

@@ -7,6 +7,7 @@ mod beat;
 mod breaking;
 mod copying;
 mod draw;
+mod edited;
 mod follow;
 mod guide;
 mod helping;
@@ -63,9 +64,8 @@ use super::pointer::{Mouse, Pointer};
 use super::scope::Arrangement;
 use super::settings::Settings;
 use super::tour::Tour;
-use super::tree;
 use super::view::{Choices, Origin, Path, Problem, ProblemKey, Renames, View};
-use crate::model::{MachineId, Program};
+use crate::model::MachineId;
 use crate::runtime::command::Command;
 use crate::runtime::record::{Finding, Level, Log, Record, What};
 
@@ -335,39 +335,6 @@ impl App {
     /// The frame is on the terminal.
     pub fn drawn(&mut self) {
         self.dirty = false;
-    }
-
-    /// What was renamed stays selected, folded, nudged and typed at.
-    fn rename(&mut self, renames: &Renames) {
-        if renames.is_empty() {
-            return;
-        }
-        self.selected = self.selected.as_ref().map(|path| renames.place(path));
-        self.folded = self.folded.iter().map(|path| renames.place(path)).collect();
-        self.value = self.value.as_ref().map(|path| renames.variable(path));
-        self.reading.only = self.reading.only.as_ref().map(|path| renames.place(path));
-        self.arrangement.rename(renames);
-        if let Some((path, _)) = &mut self.nudged {
-            *path = renames.variable(path);
-        }
-        if let Overlay::Typing(typing) = &mut self.overlay {
-            typing.goal.rename(renames);
-        }
-        self.sent.iter_mut().for_each(|typing| typing.goal.rename(renames));
-    }
-
-    fn program_changed(&mut self, before: Option<Arc<Program>>) {
-        let Some(now) = self.view.program.clone() else { return };
-        let kept = self.selected.as_ref().and_then(|selected| match &before {
-            _ if tree::element(&now, selected).is_some() => Some(selected.clone()),
-            Some(before) => tree::survivor(before, &now, selected),
-            None => None,
-        });
-        let first = || now.tops.first().map(|&machine| now[machine].path.clone());
-        self.selected = kept.or_else(first);
-        self.folded.retain(|path| tree::element(&now, path).is_some());
-        self.reading.only.take_if(|path| now.machine(path).is_none());
-        self.settle();
     }
 
     fn was_set(&mut self, var: &Path, by: &Path) {

@@ -94,8 +94,8 @@ impl Stage {
         let command = match self.compiler.compile_after(Source::new("case.lrp", text), running) {
             Ok(program) => Command::Load(Edit::of(running, program)),
             Err(Rejected { sources, diagnostics }) => {
-                let findings = findings::errors_first(&diagnostics, &sources);
-                Command::Reject { findings, files: findings::files(&diagnostics, &sources) }
+                let (findings, files) = findings::of_rejected(&diagnostics, &sources);
+                Command::Reject { findings, files }
             }
         };
         self.command(command);

@@ -195,8 +195,7 @@ impl Story {
         use lrp::session::findings;
         let compiled = Compiler::new(Vec::new()).compile(Source::new("line_follower.lrp", text));
         let Err(rejected) = compiled else { panic!("it is sound:\n{text}") };
-        let findings = findings::errors_first(&rejected.diagnostics, &rejected.sources);
-        let files = findings::files(&rejected.diagnostics, &rejected.sources);
+        let (findings, files) = findings::of_rejected(&rejected.diagnostics, &rejected.sources);
         self.tell(What::Reject { findings, files })
     }
 

@@ -191,6 +191,19 @@ pub enum Level {
     Error,
 }
 
+impl Level {
+    /// By its name, as `warn`.
+    pub fn named(name: &str) -> Option<Level> {
+        Some(match name {
+            "debug" => Level::Debug,
+            "info" => Level::Info,
+            "warn" => Level::Warn,
+            "error" => Level::Error,
+            _ => return None,
+        })
+    }
+}
+
 fn is_zero(number: &u64) -> bool {
     *number == 0
 }

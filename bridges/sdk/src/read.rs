@@ -17,9 +17,11 @@ pub fn order(line: &str) -> Option<Order> {
         "answer" => Order::Answer { id: line.id()?, error: line.optional_text("error")? },
         "variables" => Order::Variables { variables: line.list("variables", variable)? },
         "states" => Order::States { t: line.number("t")?, machines: line.list("machines", active)? },
-        "log" => {
-            Order::Log { level: line.level()?, message: line.text("message")?, state: line.optional_text("state")? }
-        }
+        "log" => Order::Log {
+            level: Level::named(&line.text("level")?)?,
+            message: line.text("message")?,
+            state: line.optional_text("state")?,
+        },
         _ => return None,
     })
 }
@@ -80,16 +82,6 @@ impl Fields {
 
     fn id(&mut self) -> Option<u64> {
         self.value("id").as_u64()
-    }
-
-    fn level(&mut self) -> Option<Level> {
-        Some(match self.text("level")?.as_str() {
-            "debug" => Level::Debug,
-            "info" => Level::Info,
-            "warn" => Level::Warn,
-            "error" => Level::Error,
-            _ => return None,
-        })
     }
 
     fn form(&mut self) -> Option<Form> {

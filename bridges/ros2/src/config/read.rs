@@ -188,16 +188,13 @@ impl Reader<'_> {
         match self.form.get("rosout") {
             None | Some(Value::Null | Value::Bool(true)) => Some(Level::Info),
             Some(Value::Bool(false)) => None,
-            Some(Value::String(level)) => match level.as_str() {
-                "debug" => Some(Level::Debug),
-                "info" => Some(Level::Info),
-                "warn" => Some(Level::Warn),
-                "error" => Some(Level::Error),
-                _ => {
-                    self.wrong(format!("no level is called `{level}`"), "debug, info, warn, error or false", "rosout");
-                    None
+            Some(Value::String(name)) => {
+                let level = Level::named(name);
+                if level.is_none() {
+                    self.wrong(format!("no level is called `{name}`"), "debug, info, warn, error or false", "rosout");
                 }
-            },
+                level
+            }
             Some(other) => {
                 self.wrong(format!("{other} is no level"), "debug, info, warn, error or false", "rosout");
                 None

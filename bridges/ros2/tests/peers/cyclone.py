@@ -3,7 +3,6 @@ rmw_cyclonedds maps them. Messages are made and read by Cyclone's own Python, no
 
 import dataclasses
 import functools
-import json
 import os
 import sys
 import threading
@@ -25,20 +24,13 @@ from cyclonedds.pub import DataWriter
 from cyclonedds.sub import DataReader
 from cyclonedds.topic import Topic
 from cyclonedds.util import duration
+from orders import obey, repeat, say
 from rosidl_parser.definition import AbstractSequence, AbstractString, Array, BasicType
 
 BASIC = {"boolean": bool, "octet": types.byte, "char": types.uint8, "float": types.float32, "double": types.float64,
          **{name: getattr(types, name) for sign in ("", "u") for bits in (8, 16, 32, 64) for name in [f"{sign}int{bits}"]}}
 
 PLAIN = Policy.DataRepresentation(use_cdrv0_representation=True, use_xcdrv2_representation=False)
-
-lock = threading.Lock()
-
-
-def say(**what):
-    with lock:
-        print(json.dumps(what), flush=True)
-
 
 # Whose request it is, in front of each request and each reply.
 Asker = make_idl_struct("Asker", "Asker", {"client": types.uint64, "number": types.int64})
@@ -171,15 +163,7 @@ class Peer:
         message = struct(type)(*parts(filled(type, value, size)))
         if topic not in self.kept:
             self.kept[topic] = self.writer("rt" + topic, struct(type), qos)
-        writer = self.kept[topic]
-
-        def send():
-            for _ in range(count):
-                writer.write(message)
-                if count > 1:
-                    time.sleep(1.0 / rate)
-
-        threading.Thread(target=send, daemon=True).start()
+        repeat(self.kept[topic].write, message, count, rate)
 
     def subscribe(self, topic, type, qos=None):
         self.reader("rt" + topic, struct(type), lambda sample: say(heard=topic, value=seen(sample)), qos)
@@ -219,12 +203,7 @@ class Peer:
 
 def main():
     peer = Peer(sys.argv[1] if len(sys.argv) > 1 else "peer")
-    say(up=True)
-    for line in sys.stdin:
-        said = json.loads(line)
-        getattr(peer, said.pop("do"))(**said)
-        peer.tell()
-        say(done=True)
+    obey(peer, peer.tell)
 
 
 main()

@@ -8,7 +8,8 @@ import math
 import time
 
 from nav2_msgs.action import NavigateToPose
-from node import Peer, main, say
+from node import Peer, main
+from orders import say
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
 
 PERIOD = 0.02

@@ -1,12 +1,12 @@
-"""A node of rclpy that does what it is told: a JSON object a line comes in, what happens goes out likewise."""
+"""A node of rclpy that does what it is told, by orders.py."""
 
-import json
 import sys
 import threading
 import time
 
 import rclpy
 from codec import cls, fill, seen
+from orders import obey, repeat, say
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.executors import MultiThreadedExecutor
@@ -16,12 +16,6 @@ from rosidl_parser.definition import NamespacedType
 
 # What is nested is looked at by its own fields.
 ANY = NamespacedType(["", ""], "")
-lock = threading.Lock()
-
-
-def say(**what):
-    with lock:
-        print(json.dumps(what), flush=True)
 
 
 def profile(said):
@@ -44,15 +38,7 @@ class Peer(Node):
             message.data = bytes(size)
         if topic not in self.kept:
             self.kept[topic] = self.create_publisher(cls(type), topic, profile(qos))
-        publisher = self.kept[topic]
-
-        def send():
-            for _ in range(count):
-                publisher.publish(message)
-                if count > 1:
-                    time.sleep(1.0 / rate)
-
-        threading.Thread(target=send, daemon=True).start()
+        repeat(self.kept[topic].publish, message, count, rate)
 
     def stamp(self, topic, count, rate):
         """Publishes the time, and says how long that took."""
@@ -165,11 +151,7 @@ def main(kind=Peer):
     executor = MultiThreadedExecutor(num_threads=4)
     executor.add_node(peer)
     threading.Thread(target=executor.spin, daemon=True).start()
-    say(up=True)
-    for line in sys.stdin:
-        said = json.loads(line)
-        getattr(peer, said.pop("do"))(**said)
-        say(done=True)
+    obey(peer)
     peer.destroy_node()
     rclpy.shutdown()
 
